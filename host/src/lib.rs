@@ -1,0 +1,1 @@
+//! hangpose on a computer with files.
