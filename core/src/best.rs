@@ -1,0 +1,56 @@
+//! A short list that keeps the best.
+
+/// The best items offered so far, best first, in a slice from outside; when it is full the worst makes way.
+pub(crate) struct Best<'a, T> {
+    slots: &'a mut [T],
+    len: usize,
+}
+
+impl<'a, T: Copy> Best<'a, T> {
+    pub(crate) fn new(slots: &'a mut [T]) -> Self {
+        Self { slots, len: 0 }
+    }
+
+    /// Puts `item` behind those that it is not better than, unless there is no place for it.
+    pub(crate) fn offer(&mut self, item: T, is_better: impl Fn(&T, &T) -> bool) {
+        let place = self.slots[..self.len].partition_point(|other| !is_better(&item, other));
+        if place < self.slots.len() {
+            self.len = (self.len + 1).min(self.slots.len());
+            self.slots[place..self.len].rotate_right(1);
+            self.slots[place] = item;
+        }
+    }
+
+    /// The item that makes way next, if the list is full.
+    pub(crate) fn next_to_go(&self) -> Option<&T> {
+        if self.len == self.slots.len() {
+            self.slots.last()
+        } else {
+            None
+        }
+    }
+
+    pub(crate) fn into_slice(self) -> &'a mut [T] {
+        &mut self.slots[..self.len]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keeps_the_best_in_order_and_the_first_of_equals() {
+        let mut slots = [(0, ' '); 3];
+        let mut best = Best::new(&mut slots);
+        for item in [(5, 'a'), (2, 'b'), (5, 'c'), (1, 'd'), (2, 'e'), (9, 'f')] {
+            best.offer(item, |a, b| a.0 < b.0);
+        }
+        assert_eq!(best.next_to_go(), Some(&(2, 'e')));
+        assert_eq!(best.into_slice(), [(1, 'd'), (2, 'b'), (2, 'e')]);
+        let mut none: [u8; 0] = [];
+        let mut best = Best::new(&mut none);
+        best.offer(1, |a, b| a < b);
+        assert!(best.into_slice().is_empty());
+    }
+}

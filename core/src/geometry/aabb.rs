@@ -1,0 +1,105 @@
+//! Axis-aligned bounding boxes.
+
+use super::{Point, Vector};
+
+/// An axis-aligned box, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// The corner with the least coordinates.
+    pub min: Point,
+    /// The corner with the greatest coordinates.
+    pub max: Point,
+}
+
+impl Aabb {
+    /// The box of nothing: growing it by a point gives that point.
+    pub(crate) const EMPTY: Self = Self {
+        min: Point::new(f32::INFINITY, f32::INFINITY, f32::INFINITY),
+        max: Point::new(f32::NEG_INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY),
+    };
+
+    /// The smallest box around `points`.
+    pub(crate) fn of<'a>(points: impl IntoIterator<Item = &'a Point>) -> Self {
+        points
+            .into_iter()
+            .fold(Self::EMPTY, |aabb, point| aabb.grow(point))
+    }
+
+    pub(crate) fn grow(&self, point: &Point) -> Self {
+        Self {
+            min: self.min.inf(point),
+            max: self.max.sup(point),
+        }
+    }
+
+    pub(crate) fn union(&self, other: &Self) -> Self {
+        Self {
+            min: self.min.inf(&other.min),
+            max: self.max.sup(&other.max),
+        }
+    }
+
+    /// Edge lengths, in metres.
+    pub fn extents(&self) -> Vector {
+        self.max - self.min
+    }
+
+    /// The length of the diagonal, in metres.
+    pub fn diagonal(&self) -> f32 {
+        self.extents().norm()
+    }
+
+    /// The centre of the box.
+    pub fn centre(&self) -> Point {
+        nalgebra::center(&self.min, &self.max)
+    }
+
+    /// Half the surface area; zero for an empty box.
+    pub(crate) fn half_area(&self) -> f32 {
+        let e = self.extents().sup(&Vector::zeros());
+        e.x * e.y + e.y * e.z + e.z * e.x
+    }
+
+    pub(crate) fn contains(&self, point: &Point) -> bool {
+        (0..3).all(|i| self.min[i] <= point[i] && point[i] <= self.max[i])
+    }
+
+    /// Square of the distance from `point` to the box; zero inside.
+    pub(crate) fn distance_squared(&self, point: &Point) -> f32 {
+        let mut sum = 0.0;
+        for i in 0..3 {
+            let outside = (self.min[i] - point[i]).max(point[i] - self.max[i]).max(0.0);
+            sum += outside * outside;
+        }
+        sum
+    }
+
+    /// Square of the distance from `point` to the farthest corner.
+    pub(crate) fn farthest_squared(&self, point: &Point) -> f32 {
+        let mut sum = 0.0;
+        for i in 0..3 {
+            let reach = (point[i] - self.min[i]).abs().max((self.max[i] - point[i]).abs());
+            sum += reach * reach;
+        }
+        sum
+    }
+
+    /// Where a ray enters the box, as a multiple of its direction; `None` if it misses or enters after `limit`.
+    /// `inverse_direction` comes from [`inverse`].
+    pub(crate) fn ray_entry(&self, origin: &Point, inverse_direction: &Vector, limit: f32) -> Option<f32> {
+        let (mut enter, mut leave) = (0.0_f32, limit);
+        for i in 0..3 {
+            let a = (self.min[i] - origin[i]) * inverse_direction[i];
+            let b = (self.max[i] - origin[i]) * inverse_direction[i];
+            enter = enter.max(a.min(b));
+            leave = leave.min(a.max(b));
+        }
+        // The slack covers the rounding of the products above, so that flat boxes are not missed.
+        (enter <= leave * (1.0 + 4.0 * f32::EPSILON)).then_some(enter)
+    }
+}
+
+/// One over each component, large but finite for a zero, so that a ray in the plane of a face gives no NaN.
+pub(crate) fn inverse(direction: &Vector) -> Vector {
+    direction.map(|d| if d.abs() < 1e-30 { 1e30 } else { 1.0 / d })
+}

@@ -1,0 +1,390 @@
+//! A tree of bounding boxes over items that have a box each: triangles or points.
+//!
+//! Knows only boxes; what an item is, and how far or where it is hit, comes from the caller as a closure.
+
+use super::{Aabb, Point, Vector, aabb::inverse};
+use bytemuck::{Pod, Zeroable};
+
+/// A box with either two children or a run of items.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Node {
+    min: [f32; 3],
+    /// First of the two children, which are neighbours, or first item.
+    first: u32,
+    max: [f32; 3],
+    /// How many items; zero if the node has children instead.
+    count: u32,
+}
+
+impl Node {
+    pub(crate) fn aabb(&self) -> Aabb {
+        Aabb {
+            min: self.min.into(),
+            max: self.max.into(),
+        }
+    }
+
+    /// The items of a leaf, as positions in the tree's order; `None` for an inner node.
+    pub(crate) fn items(&self) -> Option<core::ops::Range<usize>> {
+        (self.count > 0).then(|| self.first as usize..(self.first + self.count) as usize)
+    }
+
+    /// The two children of an inner node.
+    pub(crate) fn children(&self) -> [u32; 2] {
+        [self.first, self.first + 1]
+    }
+}
+
+/// A tree over `n` items. Queries name items by their position in the tree's order.
+#[derive(Clone, Copy)]
+pub(crate) struct Bvh<'m> {
+    nodes: &'m [Node],
+}
+
+/// Leaves hold at most this many items, and at least two unless the tree has only one.
+const LEAF_ITEMS: usize = 4;
+/// Where the surface-area heuristic may cut the widest axis.
+const BINS: usize = 12;
+/// Below this depth nodes are halved by count, so that no tree is deeper than `MAX_DEPTH`.
+const HEURISTIC_DEPTH: u32 = 28;
+/// Bounds every traversal stack: `HEURISTIC_DEPTH` plus the halvings of `mesh::MAX_COUNT` items.
+const MAX_DEPTH: usize = 60;
+
+impl<'m> Bvh<'m> {
+    /// The most nodes that a tree over `items` may take: its leaves hold at least two.
+    pub(crate) const fn max_nodes(items: usize) -> usize {
+        if items < 2 { 1 } else { items }
+    }
+
+    /// Builds the tree over the items named in `order`, at least one, and puts them into tree order. `bounds` gives the box of
+    /// a named item, `nodes` takes [`max_nodes`](Self::max_nodes), and `centres`, working memory, one entry an
+    /// item.
+    pub(crate) fn build(
+        order: &mut [u32],
+        bounds: impl Fn(u32) -> Aabb,
+        nodes: &'m mut [Node],
+        centres: &mut [[f32; 3]],
+    ) -> Self {
+        // Twice the centres of the boxes, in the order of `order`, moved along with it.
+        for (centre, &item) in centres.iter_mut().zip(order.iter()) {
+            let aabb = bounds(item);
+            *centre = (aabb.min.coords + aabb.max.coords).into();
+        }
+        let mut used = 1;
+        let mut pending = heapless::Vec::<(usize, usize, usize, u32), { MAX_DEPTH + 2 }>::new();
+        let mut next = Some((0, 0, order.len(), 0));
+        while let Some((node, first, count, depth)) = next {
+            let items = &mut order[first..first + count];
+            let aabb = items
+                .iter()
+                .fold(Aabb::EMPTY, |aabb, &item| aabb.union(&bounds(item)));
+            nodes[node] = Node {
+                min: aabb.min.into(),
+                max: aabb.max.into(),
+                first: first as u32,
+                count: count as u32,
+            };
+            if count > LEAF_ITEMS {
+                let middle = split(items, &mut centres[first..first + count], &bounds, depth);
+                (nodes[node].first, nodes[node].count) = (used as u32, 0);
+                // Holds one sibling per level, so it cannot be full.
+                let _ = pending.push((used + 1, first + middle, count - middle, depth + 1));
+                next = Some((used, first, middle, depth + 1));
+                used += 2;
+            } else {
+                next = pending.pop();
+            }
+        }
+        Self {
+            nodes: &nodes[..used],
+        }
+    }
+
+    pub(crate) fn nodes(&self) -> &'m [Node] {
+        self.nodes
+    }
+
+    pub(crate) fn aabb(&self) -> Aabb {
+        self.nodes[0].aabb()
+    }
+
+    /// How many items are below a node.
+    pub(crate) fn count_items(&self, node: u32) -> u32 {
+        let mut count = 0;
+        self.descend_from(node, |_, node| {
+            count += node.count;
+            true
+        });
+        count
+    }
+
+    /// Visits the leaves whose box is closer to `point` than a limit, nearer ones first. `visit` is given the
+    /// items of a leaf and the square of the limit, and returns the square of the new limit, which may only
+    /// shrink.
+    pub(crate) fn visit_near(
+        &self,
+        point: &Point,
+        limit_squared: f32,
+        mut visit: impl FnMut(core::ops::Range<usize>, f32) -> f32,
+    ) {
+        let mut limit = limit_squared;
+        let distance = |node: u32| self.nodes[node as usize].aabb().distance_squared(point);
+        let mut stack = heapless::Vec::<(u32, f32), { MAX_DEPTH + 2 }>::new();
+        let mut next = Some((0, distance(0)));
+        while let Some((node, at)) = next {
+            if at > limit {
+                next = stack.pop();
+                continue;
+            }
+            let node = &self.nodes[node as usize];
+            if let Some(items) = node.items() {
+                limit = visit(items, limit);
+                next = stack.pop();
+            } else {
+                let [left, right] = node.children().map(|child| (child, distance(child)));
+                let (near, far) = if right.1 < left.1 {
+                    (right, left)
+                } else {
+                    (left, right)
+                };
+                let _ = stack.push(far);
+                next = Some(near);
+            }
+        }
+    }
+
+    /// Visits the leaves that a ray enters before a limit, nearer ones first. `visit` is given the items of a
+    /// leaf and the limit, and returns the new limit, which may only shrink; below zero ends the search.
+    pub(crate) fn visit_along(
+        &self,
+        origin: &Point,
+        direction: &Vector,
+        limit: f32,
+        mut visit: impl FnMut(core::ops::Range<usize>, f32) -> f32,
+    ) {
+        let mut limit = limit;
+        let inverse = inverse(direction);
+        let entry = |node: u32, limit| {
+            self.nodes[node as usize]
+                .aabb()
+                .ray_entry(origin, &inverse, limit)
+        };
+        let mut stack = heapless::Vec::<(u32, f32), { MAX_DEPTH + 2 }>::new();
+        let mut next = entry(0, limit).map(|at| (0, at));
+        while let Some((node, at)) = next {
+            if at > limit {
+                next = stack.pop();
+                continue;
+            }
+            let node = &self.nodes[node as usize];
+            if let Some(items) = node.items() {
+                limit = visit(items, limit);
+                if limit < 0.0 {
+                    return;
+                }
+                next = stack.pop();
+                continue;
+            }
+            let [left, right] = node
+                .children()
+                .map(|child| entry(child, limit).map(|at| (child, at)));
+            next = match (left, right) {
+                (Some(left), Some(right)) => {
+                    let (near, far) = if right.1 < left.1 {
+                        (right, left)
+                    } else {
+                        (left, right)
+                    };
+                    let _ = stack.push(far);
+                    Some(near)
+                }
+                (Some(only), None) | (None, Some(only)) => Some(only),
+                (None, None) => stack.pop(),
+            };
+        }
+    }
+
+    /// Descends from the root: `visit` looks at a node and says whether to go on to its children.
+    pub(crate) fn descend(&self, visit: impl FnMut(u32, &Node) -> bool) {
+        self.descend_from(0, visit);
+    }
+
+    fn descend_from(&self, node: u32, mut visit: impl FnMut(u32, &Node) -> bool) {
+        let mut stack = heapless::Vec::<u32, { MAX_DEPTH + 2 }>::new();
+        let mut next = Some(node);
+        while let Some(index) = next {
+            let node = &self.nodes[index as usize];
+            next = if visit(index, node) && node.count == 0 {
+                let [left, right] = node.children();
+                let _ = stack.push(right);
+                Some(left)
+            } else {
+                stack.pop()
+            };
+        }
+    }
+}
+
+/// Puts `items` (and their `centres`) into two groups of at least two and returns the size of the first.
+fn split(items: &mut [u32], centres: &mut [[f32; 3]], bounds: &impl Fn(u32) -> Aabb, depth: u32) -> usize {
+    let extent = Aabb::of(bytemuck::cast_slice::<_, Point>(centres).iter());
+    let axis = extent.extents().imax();
+    let (low, width) = (extent.min[axis], extent.extents()[axis]);
+    if depth < HEURISTIC_DEPTH && width > 0.0 {
+        let bin = |centre: &[f32; 3]| (((centre[axis] - low) / width * BINS as f32) as usize).min(BINS - 1);
+        if let Some(cut) = cheapest_cut(items, centres, bounds, bin) {
+            return partition(items, centres, |centre| bin(centre) < cut);
+        }
+    }
+    halve(items, centres, axis)
+}
+
+/// The first bin of the right-hand group where the surface-area heuristic is least, if any cut leaves two items
+/// on each side.
+fn cheapest_cut(
+    items: &[u32],
+    centres: &[[f32; 3]],
+    bounds: &impl Fn(u32) -> Aabb,
+    bin: impl Fn(&[f32; 3]) -> usize,
+) -> Option<usize> {
+    let mut counts = [0_usize; BINS];
+    let mut boxes = [Aabb::EMPTY; BINS];
+    for (&item, centre) in items.iter().zip(centres) {
+        let bin = bin(centre);
+        counts[bin] += 1;
+        boxes[bin] = boxes[bin].union(&bounds(item));
+    }
+    let mut right_cost = [0.0; BINS];
+    let (mut aabb, mut count) = (Aabb::EMPTY, 0);
+    for bin in (1..BINS).rev() {
+        aabb = aabb.union(&boxes[bin]);
+        count += counts[bin];
+        right_cost[bin] = aabb.half_area() * count as f32;
+    }
+    let (mut aabb, mut count) = (Aabb::EMPTY, 0);
+    let mut best: Option<(f32, usize)> = None;
+    for cut in 1..BINS {
+        aabb = aabb.union(&boxes[cut - 1]);
+        count += counts[cut - 1];
+        let cost = aabb.half_area() * count as f32 + right_cost[cut];
+        if count >= 2 && items.len() - count >= 2 && best.is_none_or(|(least, _)| cost < least) {
+            best = Some((cost, cut));
+        }
+    }
+    best.map(|(_, cut)| cut)
+}
+
+/// Moves the items whose centre is `left` to the front and returns how many they are.
+fn partition(items: &mut [u32], centres: &mut [[f32; 3]], left: impl Fn(&[f32; 3]) -> bool) -> usize {
+    let mut middle = 0;
+    for i in 0..items.len() {
+        if left(&centres[i]) {
+            items.swap(middle, i);
+            centres.swap(middle, i);
+            middle += 1;
+        }
+    }
+    middle
+}
+
+/// Puts the half of the items with the lesser centres in front: quickselect, ties broken by item, so that the
+/// result does not depend on how the sorting is done.
+fn halve(items: &mut [u32], centres: &mut [[f32; 3]], axis: usize) -> usize {
+    let middle = items.len() / 2;
+    let (mut from, mut to) = (0, items.len());
+    while to - from > 1 {
+        // The pivot goes to the end; those before it are gathered at the front.
+        let pivot = from + (to - from) / 2;
+        items.swap(pivot, to - 1);
+        centres.swap(pivot, to - 1);
+        let (value, item) = (centres[to - 1][axis], items[to - 1]);
+        let mut store = from;
+        for i in from..to - 1 {
+            if centres[i][axis]
+                .total_cmp(&value)
+                .then(items[i].cmp(&item))
+                .is_lt()
+            {
+                items.swap(i, store);
+                centres.swap(i, store);
+                store += 1;
+            }
+        }
+        items.swap(store, to - 1);
+        centres.swap(store, to - 1);
+        if store < middle {
+            from = store + 1;
+        } else {
+            to = store;
+        }
+    }
+    middle
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    fn with_tree(points: &[Point], check: impl Fn(&Bvh, &[u32])) {
+        let mut nodes = vec![Node::zeroed(); Bvh::max_nodes(points.len())];
+        let mut centres = vec![[0.0; 3]; points.len()];
+        let mut order: Vec<u32> = (0..points.len() as u32).collect();
+        let bounds = |item: u32| Aabb::of([&points[item as usize]]);
+        let bvh = Bvh::build(&mut order, bounds, &mut nodes, &mut centres);
+        check(&bvh, &order);
+    }
+
+    fn random_points(count: usize, seed: u64) -> Vec<Point> {
+        let mut random = Random::new(seed);
+        (0..count)
+            .map(|_| Point::from([(); 3].map(|()| random.next_f32())))
+            .collect()
+    }
+
+    #[test]
+    fn every_item_is_in_one_leaf_and_inside_its_ancestors() {
+        let line: Vec<Point> = (0..500)
+            .map(|i| Point::new(1.5_f32.powi(i % 60), 0.0, 0.0))
+            .collect();
+        let same = vec![Point::new(1.0, 2.0, 3.0); 999];
+        for points in [
+            random_points(1, 1),
+            random_points(5, 2),
+            random_points(2000, 3),
+            line,
+            same,
+        ] {
+            with_tree(&points, |bvh, order| {
+                let mut seen = vec![0; points.len()];
+                bvh.descend(|_, node| {
+                    for &item in node.items().into_iter().flat_map(|items| &order[items]) {
+                        seen[item as usize] += 1;
+                        assert!(node.aabb().contains(&points[item as usize]));
+                    }
+                    if node.count == 0 {
+                        for child in node.children() {
+                            let child = bvh.nodes[child as usize].aabb();
+                            assert!(node.aabb().contains(&child.min) && node.aabb().contains(&child.max));
+                        }
+                    }
+                    true
+                });
+                assert!(seen.iter().all(|&count| count == 1));
+            });
+        }
+    }
+
+    #[test]
+    fn halving_splits_at_the_median() {
+        let points = random_points(101, 4);
+        let mut order: Vec<u32> = (0..101).collect();
+        let mut centres: Vec<[f32; 3]> = points.iter().map(|p| (*p).into()).collect();
+        centres[17] = centres[80];
+        let middle = halve(&mut order, &mut centres, 1);
+        assert_eq!(middle, 50);
+        let key = |i: usize| (centres[i][1], order[i]);
+        assert!((0..50).all(|i| (50..101).all(|j| key(i) < key(j))));
+    }
+}

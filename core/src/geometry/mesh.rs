@@ -1,0 +1,212 @@
+//! Triangle meshes as the caller holds them, checked at the border.
+
+use super::{Aabb, MAX_COORDINATE, Point};
+
+/// A checked view of a triangle mesh: corners counter-clockwise seen from outside, in metres.
+///
+/// Open, self-overlapping and multi-body meshes are fine, and so are degenerate triangles, which are passed over.
+/// Nothing is copied.
+#[derive(Clone, Copy, Debug)]
+pub struct Mesh<'a> {
+    vertices: &'a [Point],
+    triangles: &'a [[u32; 3]],
+}
+
+/// Why a mesh cannot be used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MeshError {
+    /// There is not one triangle.
+    Empty,
+    /// More triangles or vertices than indices can tell apart.
+    TooLarge {
+        /// How many there are.
+        count: usize,
+        /// The most that there may be.
+        limit: usize,
+    },
+    /// A coordinate is infinite, not a number, or beyond [`MAX_COORDINATE`].
+    Coordinate {
+        /// Index of the vertex.
+        vertex: usize,
+        /// Its coordinates.
+        position: [f32; 3],
+    },
+    /// A triangle names a vertex that does not exist.
+    Index {
+        /// Index of the triangle.
+        triangle: usize,
+        /// The vertex that it names.
+        vertex: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// No triangle has an area.
+    AllDegenerate {
+        /// How many triangles there are.
+        triangles: usize,
+    },
+}
+
+impl core::fmt::Display for MeshError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Empty => write!(f, "the mesh has no triangles"),
+            Self::TooLarge { count, limit } => {
+                write!(
+                    f,
+                    "the mesh has {count} vertices or triangles and at most {limit} are possible: decimate it"
+                )
+            }
+            Self::Coordinate { vertex, position } => write!(
+                f,
+                "vertex {vertex} is at {position:?}: every coordinate must be a number of metres within ±{MAX_COORDINATE}"
+            ),
+            Self::Index {
+                triangle,
+                vertex,
+                vertices,
+            } => {
+                write!(
+                    f,
+                    "triangle {triangle} names vertex {vertex}, but there are {vertices} vertices"
+                )
+            }
+            Self::AllDegenerate { triangles } => {
+                write!(
+                    f,
+                    "all {triangles} triangles are degenerate: none has an area (is the mesh flattened, or scaled to nothing?)"
+                )
+            }
+        }
+    }
+}
+
+impl core::error::Error for MeshError {}
+
+/// Counts of vertices, triangles and points stay below this, so that a `u32` can index what is built on them.
+pub(crate) const MAX_COUNT: usize = 1 << 28;
+
+impl<'a> Mesh<'a> {
+    /// Checks `vertices` (metres) and `triangles` (indices into them).
+    pub fn new(vertices: &'a [[f32; 3]], triangles: &'a [[u32; 3]]) -> Result<Self, MeshError> {
+        if triangles.is_empty() {
+            return Err(MeshError::Empty);
+        }
+        let count = vertices.len().max(triangles.len());
+        if count > MAX_COUNT {
+            return Err(MeshError::TooLarge {
+                count,
+                limit: MAX_COUNT,
+            });
+        }
+        for (vertex, position) in vertices.iter().enumerate() {
+            if !is_usable(position) {
+                return Err(MeshError::Coordinate {
+                    vertex,
+                    position: *position,
+                });
+            }
+        }
+        for (triangle, corners) in triangles.iter().enumerate() {
+            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= vertices.len()) {
+                return Err(MeshError::Index {
+                    triangle,
+                    vertex,
+                    vertices: vertices.len(),
+                });
+            }
+        }
+        let mesh = Self {
+            vertices: bytemuck::cast_slice(vertices),
+            triangles,
+        };
+        if mesh.solid_triangles().next().is_none() {
+            return Err(MeshError::AllDegenerate {
+                triangles: triangles.len(),
+            });
+        }
+        Ok(mesh)
+    }
+
+    /// All vertices, also those that no triangle uses.
+    pub fn vertices(&self) -> &'a [Point] {
+        self.vertices
+    }
+
+    /// Corner indices of all triangles.
+    pub fn triangles(&self) -> &'a [[u32; 3]] {
+        self.triangles
+    }
+
+    /// Corners of triangle `index`, degenerate or not.
+    pub(crate) fn corners(&self, index: usize) -> [Point; 3] {
+        self.triangles[index].map(|v| self.vertices[v as usize])
+    }
+
+    /// The indices of the triangles that have an area, in order.
+    pub(crate) fn solid_triangles(&self) -> impl Iterator<Item = u32> + use<'a> {
+        let mesh = *self;
+        (0..self.triangles.len() as u32)
+            .filter(move |&t| super::triangle::has_area(&mesh.corners(t as usize)))
+    }
+
+    /// The box around all triangles.
+    pub fn aabb(&self) -> Aabb {
+        Aabb::of(
+            self.triangles
+                .iter()
+                .flatten()
+                .map(|&v| &self.vertices[v as usize]),
+        )
+    }
+}
+
+/// Whether every coordinate is finite and within [`MAX_COORDINATE`].
+pub(crate) fn is_usable(position: &[f32; 3]) -> bool {
+    position.iter().all(|x| x.abs() <= MAX_COORDINATE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+
+    #[test]
+    fn accepts_a_square_with_a_degenerate_triangle() {
+        let mesh = Mesh::new(&SQUARE, &[[0, 1, 2], [1, 1, 2], [0, 2, 3]]).unwrap();
+        assert_eq!(mesh.solid_triangles().collect::<Vec<_>>(), [0, 2]);
+        assert_eq!(mesh.aabb().extents(), crate::geometry::Vector::new(1.0, 1.0, 0.0));
+    }
+
+    #[test]
+    fn names_what_is_broken() {
+        let check =
+            |vertices: &[[f32; 3]], triangles: &[[u32; 3]]| Mesh::new(vertices, triangles).unwrap_err();
+        assert_eq!(check(&SQUARE, &[]), MeshError::Empty);
+        assert_eq!(check(&[], &[]), MeshError::Empty);
+        assert_eq!(
+            check(&SQUARE, &[[0, 1, 2], [0, 1, 4]]),
+            MeshError::Index {
+                triangle: 1,
+                vertex: 4,
+                vertices: 4
+            }
+        );
+        assert_eq!(
+            check(&SQUARE, &[[0, 1, 1], [2, 2, 2]]),
+            MeshError::AllDegenerate { triangles: 2 }
+        );
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e9] {
+            let mut vertices = SQUARE;
+            vertices[2][1] = bad;
+            assert!(
+                matches!(
+                    check(&vertices, &[[0, 1, 3]]),
+                    MeshError::Coordinate { vertex: 2, .. }
+                ),
+                "{bad}"
+            );
+        }
+    }
+}

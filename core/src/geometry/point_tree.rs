@@ -1,0 +1,208 @@
+//! Neighbours among points.
+
+use super::bvh::{Bvh, Node};
+use super::{Aabb, Point};
+use crate::memory::{Arena, OutOfMemory, array_bytes};
+
+/// Points arranged for neighbour queries. Queries name points by their position in [`points`](Self::points),
+/// which is the tree's order and not the caller's.
+#[derive(Clone, Copy)]
+pub struct PointTree<'m> {
+    points: &'m [Point],
+    order: &'m [u32],
+    bvh: Bvh<'m>,
+}
+
+/// A point found by a query: its position in the tree's order and the square of its distance, m².
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Neighbour {
+    /// Position in the tree's order.
+    pub index: u32,
+    /// Square of the distance, m².
+    pub distance_squared: f32,
+}
+
+impl Neighbour {
+    fn is_before(&self, other: &Self) -> bool {
+        self.distance_squared
+            .total_cmp(&other.distance_squared)
+            .then(self.index.cmp(&other.index))
+            .is_lt()
+    }
+}
+
+impl<'m> PointTree<'m> {
+    /// Bytes of a tree over `points`.
+    pub(crate) const fn bytes(points: usize) -> usize {
+        array_bytes::<u32>(points)
+            .saturating_add(array_bytes::<Point>(points))
+            .saturating_add(array_bytes::<Node>(Bvh::max_nodes(points)))
+    }
+
+    /// Bytes of working memory for building it.
+    pub(crate) const fn scratch_bytes(points: usize) -> usize {
+        array_bytes::<[f32; 3]>(points)
+    }
+
+    /// Arranges `points`, at least one.
+    pub(crate) fn build(points: &[Point], arena: &mut Arena<'m>) -> Result<Self, OutOfMemory> {
+        let order = arena.slice::<u32>(points.len())?;
+        let sorted = arena.slice::<Point>(points.len())?;
+        let nodes = arena.slice::<Node>(Bvh::max_nodes(points.len()))?;
+        let mut scratch = arena.scratch();
+        let centres = scratch.slice::<[f32; 3]>(points.len())?;
+        for (slot, index) in order.iter_mut().zip(0..) {
+            *slot = index;
+        }
+        let bvh = Bvh::build(order, |index| Aabb::of([&points[index as usize]]), nodes, centres);
+        for (slot, &index) in sorted.iter_mut().zip(order.iter()) {
+            *slot = points[index as usize];
+        }
+        Ok(Self {
+            points: sorted,
+            order,
+            bvh,
+        })
+    }
+
+    /// The points, in tree order.
+    pub fn points(&self) -> &'m [Point] {
+        self.points
+    }
+
+    /// For each point in tree order, its index in the slice that the tree was built from.
+    pub fn order(&self) -> &'m [u32] {
+        self.order
+    }
+
+    /// The box around all points.
+    pub fn aabb(&self) -> Aabb {
+        self.bvh.aabb()
+    }
+
+    pub(crate) fn bvh(&self) -> &Bvh<'m> {
+        &self.bvh
+    }
+
+    /// The point closest to `query`; of equally close ones the first.
+    pub fn nearest(&self, query: &Point) -> Neighbour {
+        let mut nearest = [Neighbour {
+            index: 0,
+            distance_squared: f32::INFINITY,
+        }];
+        self.k_nearest(query, &mut nearest);
+        nearest[0]
+    }
+
+    /// The `found.len()` points closest to `query`, nearest first, fewer if there are not as many.
+    pub fn k_nearest<'f>(&self, query: &Point, found: &'f mut [Neighbour]) -> &'f [Neighbour] {
+        let mut count = 0;
+        if !found.is_empty() {
+            self.bvh.visit_near(query, f32::INFINITY, |items, mut limit| {
+                for index in items {
+                    let distance_squared = (self.points[index] - query).norm_squared();
+                    let candidate = Neighbour {
+                        index: index as u32,
+                        distance_squared,
+                    };
+                    if count == found.len() && !candidate.is_before(&found[count - 1]) {
+                        continue;
+                    }
+                    count = (count + 1).min(found.len());
+                    let mut place = count - 1;
+                    while place > 0 && candidate.is_before(&found[place - 1]) {
+                        found[place] = found[place - 1];
+                        place -= 1;
+                    }
+                    found[place] = candidate;
+                    if count == found.len() {
+                        limit = found[count - 1].distance_squared;
+                    }
+                }
+                limit
+            });
+        }
+        &found[..count]
+    }
+
+    /// Calls `visit` for each point within `radius` of `query`, in no particular but a repeatable order.
+    pub fn for_each_within(&self, query: &Point, radius: f32, mut visit: impl FnMut(Neighbour)) {
+        self.bvh.visit_near(query, radius * radius, |items, limit| {
+            for index in items {
+                let distance_squared = (self.points[index] - query).norm_squared();
+                if distance_squared <= limit {
+                    visit(Neighbour {
+                        index: index as u32,
+                        distance_squared,
+                    });
+                }
+            }
+            limit
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::memory::model_bytes;
+    use crate::random::Random;
+
+    /// Uniform, clumped and duplicated points against brute force.
+    #[test]
+    fn queries_agree_with_brute_force() {
+        let mut random = Random::new(5);
+        let mut uniform = |scale: f32| Point::from([(); 3].map(|()| random.next_f32() * scale));
+        let mut points: Vec<Point> = (0..700).map(|_| uniform(1.0)).collect();
+        points.extend((0..200).map(|_| uniform(0.01)));
+        points.extend_from_within(..100);
+        let queries: Vec<Point> = (0..100)
+            .map(|_| uniform(1.2))
+            .chain(points[..50].iter().copied())
+            .collect();
+
+        let needed = model_bytes(PointTree::bytes(points.len()) + PointTree::scratch_bytes(points.len()));
+        let mut memory = vec![0; needed];
+        let mut arena = Arena::new(&mut memory, needed).unwrap();
+        let tree = PointTree::build(&points, &mut arena).unwrap();
+        assert!(
+            tree.order()
+                .iter()
+                .zip(tree.points())
+                .all(|(&i, p)| points[i as usize] == *p)
+        );
+
+        for query in &queries {
+            let mut brute: Vec<Neighbour> = (0..tree.points().len() as u32)
+                .map(|index| Neighbour {
+                    index,
+                    distance_squared: (tree.points()[index as usize] - query).norm_squared(),
+                })
+                .collect();
+            brute.sort_by(|a, b| {
+                a.distance_squared
+                    .total_cmp(&b.distance_squared)
+                    .then(a.index.cmp(&b.index))
+            });
+            assert_eq!(tree.nearest(query), brute[0]);
+            for k in [0, 1, 7, 30, 2000] {
+                let mut found = vec![brute[0]; k];
+                assert_eq!(tree.k_nearest(query, &mut found), &brute[..k.min(brute.len())]);
+            }
+            for radius in [0.0, 0.05, 0.4] {
+                let mut within = Vec::new();
+                tree.for_each_within(query, radius, |n| within.push(n));
+                within.sort_by(|a, b| {
+                    a.distance_squared
+                        .total_cmp(&b.distance_squared)
+                        .then(a.index.cmp(&b.index))
+                });
+                let expected = brute
+                    .iter()
+                    .filter(|n| n.distance_squared <= radius * radius)
+                    .count();
+                assert_eq!(within, &brute[..expected]);
+            }
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The thing that is hung.
+
+use super::AnalysisError;
+use super::hangability::{self, Hangability, HangabilityCounts, HangingSite};
+use crate::geometry::{MassProperties, Mesh, Point, PointTree, Surface, Vector};
+use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
+use crate::monitor::{Meter, Monitor, Stop, Work};
+use crate::params::Params;
+use crate::perception::sampling;
+
+/// An object, analysed: shape, centre of mass and hanging sites, in object coordinates. Immutable; any number of
+/// threads may match it at once.
+#[derive(Clone, Copy)]
+pub struct Object<'m> {
+    surface: Surface<'m>,
+    mass: MassProperties,
+    centre_of_mass: Point,
+    sites: &'m [HangingSite],
+    counts: HangabilityCounts,
+    work: Work,
+    stopped: Option<Stop>,
+}
+
+impl<'m> Object<'m> {
+    /// Bytes of memory for any object within `limits`.
+    pub const fn bytes(limits: &Limits) -> usize {
+        let model = Surface::bytes(limits.triangles)
+            .saturating_add(array_bytes::<HangingSite>(hangability::MAX_SITES));
+        let before_sampling = larger(
+            MassProperties::scratch_bytes(limits.vertices, limits.triangles),
+            Surface::scratch_bytes(limits.triangles),
+        );
+        let samples = array_bytes::<Point>(limits.samples).saturating_mul(2);
+        let after_tree = larger(
+            PointTree::scratch_bytes(limits.samples),
+            hangability::scratch_bytes(limits.samples),
+        );
+        let with_samples = larger(
+            sampling::scratch_bytes(limits.samples),
+            PointTree::bytes(limits.samples).saturating_add(after_tree),
+        );
+        model_bytes(model.saturating_add(larger(before_sampling, samples.saturating_add(with_samples))))
+    }
+
+    /// Analyses `mesh` in `memory`, which must hold [`Object::bytes`] for its size and `params.samples`. The mesh
+    /// need not stay.
+    pub fn analyze(
+        mesh: &Mesh,
+        params: &Params,
+        memory: &'m mut [u8],
+        monitor: &Monitor,
+    ) -> Result<Self, AnalysisError> {
+        params.validate()?;
+        let limits = Limits {
+            vertices: mesh.vertices().len(),
+            triangles: mesh.triangles().len(),
+            samples: params.samples,
+            points: 0,
+        };
+        let mut arena = Arena::new(memory, Self::bytes(&limits))?;
+        let mut meter = Meter::new(monitor);
+
+        let mass = MassProperties::of(mesh, arena.scratch())?;
+        let surface = Surface::build(mesh, mass.is_inside_out, &mut arena)?;
+        let sites = arena.slice::<HangingSite>(hangability::MAX_SITES)?;
+        meter.check().map_err(|_| AnalysisError::Cancelled)?;
+
+        let mut scratch = arena.scratch();
+        let points = scratch.slice::<Point>(params.samples)?;
+        let normals = scratch.slice::<Vector>(params.samples)?;
+        sampling::sample_into(mesh, params.seed, points, normals, scratch.scratch())?;
+        if mass.is_inside_out {
+            normals.iter_mut().for_each(|normal| *normal = -*normal);
+        }
+        meter.check().map_err(|_| AnalysisError::Cancelled)?;
+
+        let tree = PointTree::build(points, &mut scratch)?;
+        let sample_mean = mean_of(points);
+        let centre_of_mass = params.resolve_centre_of_mass(sample_mean, mass.volume_centroid);
+        let search = Hangability {
+            surface: &surface,
+            points,
+            normals,
+            tree: &tree,
+            centre_of_mass,
+            params,
+        };
+        let (counts, stopped) = search.find(sites, &mut meter, scratch)?;
+        if stopped == Some(Stop::Cancelled) {
+            return Err(AnalysisError::Cancelled);
+        }
+        let sites = &sites[..counts.sites];
+        Ok(Self {
+            surface,
+            mass,
+            centre_of_mass,
+            sites,
+            counts,
+            work: meter.work,
+            stopped,
+        })
+    }
+
+    /// The mesh, for rays and distances.
+    pub fn surface(&self) -> &Surface<'m> {
+        &self.surface
+    }
+
+    /// Area, volume and closedness of the mesh.
+    pub fn mass(&self) -> &MassProperties {
+        &self.mass
+    }
+
+    /// The centre of mass that the poses are made for, by [`Params::centre_of_mass`]; metres.
+    pub fn centre_of_mass(&self) -> Point {
+        self.centre_of_mass
+    }
+
+    /// Where the object can be hung, the best encircled site first.
+    pub fn sites(&self) -> &'m [HangingSite] {
+        self.sites
+    }
+
+    /// What was left after each step of the search for sites.
+    pub fn counts(&self) -> HangabilityCounts {
+        self.counts
+    }
+
+    /// Rays and distance queries spent.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// Why the search for sites ended early, if it did; then there may be more than [`sites`](Self::sites).
+    pub fn stopped(&self) -> Option<Stop> {
+        self.stopped
+    }
+}
+
+/// `h_c` of eq. (3). Summed in double precision, so that ten thousand terms lose nothing.
+fn mean_of(points: &[Point]) -> Point {
+    let sum: nalgebra::Vector3<f64> = points.iter().map(|point| point.coords.cast::<f64>()).sum();
+    Point::from((sum / points.len() as f64).cast::<f32>())
+}

@@ -1,0 +1,171 @@
+//! A priority queue whose items can be found and re-weighed, over memory from outside.
+
+/// A binary heap of the items 0 to n-1, each with a weight; the heaviest is on top, of equally heavy ones the
+/// first. The items not in the heap stand behind it.
+pub(crate) struct Heap<'s> {
+    weights: &'s mut [f32],
+    /// The heap in the first `len` entries, then the items that are not in it.
+    order: &'s mut [u32],
+    /// Where each item stands in `order`.
+    places: &'s mut [u32],
+    len: usize,
+}
+
+impl<'s> Heap<'s> {
+    /// An empty heap for `weights.len()` items; `order` and `places`, of the same length, are overwritten.
+    pub(crate) fn empty(weights: &'s mut [f32], order: &'s mut [u32], places: &'s mut [u32]) -> Self {
+        for (index, (slot, place)) in order.iter_mut().zip(places.iter_mut()).enumerate() {
+            (*slot, *place) = (index as u32, index as u32);
+        }
+        Self {
+            weights,
+            order,
+            places,
+            len: 0,
+        }
+    }
+
+    /// A heap of all items.
+    pub(crate) fn full(weights: &'s mut [f32], order: &'s mut [u32], places: &'s mut [u32]) -> Self {
+        let mut heap = Self::empty(weights, order, places);
+        heap.len = heap.order.len();
+        for place in (0..heap.len / 2).rev() {
+            heap.sink(place);
+        }
+        heap
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.len
+    }
+
+    pub(crate) fn contains(&self, item: usize) -> bool {
+        (self.places[item] as usize) < self.len
+    }
+
+    /// Takes the heaviest item out; `None` if there is none.
+    pub(crate) fn pop(&mut self) -> Option<usize> {
+        self.len = self.len.checked_sub(1)?;
+        self.exchange(0, self.len);
+        self.sink(0);
+        Some(self.order[self.len] as usize)
+    }
+
+    /// Makes an item in the heap lighter.
+    pub(crate) fn lighten(&mut self, item: usize, by: f32) {
+        self.weights[item] -= by;
+        self.sink(self.places[item] as usize);
+    }
+
+    /// Puts an item in with this weight, or makes it heavier if it is in and lighter; says whether it did.
+    pub(crate) fn offer(&mut self, item: usize, weight: f32) -> bool {
+        if !self.contains(item) {
+            self.exchange(self.places[item] as usize, self.len);
+            self.len += 1;
+        } else if weight <= self.weights[item] {
+            return false;
+        }
+        self.weights[item] = weight;
+        self.swim(self.places[item] as usize);
+        true
+    }
+
+    /// The items in the heap, in no particular but a repeatable order.
+    pub(crate) fn into_items(self) -> &'s [u32] {
+        &self.order[..self.len]
+    }
+
+    fn is_heavier(&self, a: u32, b: u32) -> bool {
+        let (wa, wb) = (self.weights[a as usize], self.weights[b as usize]);
+        wa > wb || (wa == wb && a < b)
+    }
+
+    fn exchange(&mut self, a: usize, b: usize) {
+        self.order.swap(a, b);
+        self.places[self.order[a] as usize] = a as u32;
+        self.places[self.order[b] as usize] = b as u32;
+    }
+
+    fn sink(&mut self, mut place: usize) {
+        let item = self.order[place];
+        loop {
+            let mut child = 2 * place + 1;
+            if child >= self.len {
+                break;
+            }
+            if child + 1 < self.len && self.is_heavier(self.order[child + 1], self.order[child]) {
+                child += 1;
+            }
+            if !self.is_heavier(self.order[child], item) {
+                break;
+            }
+            self.order[place] = self.order[child];
+            self.places[self.order[place] as usize] = place as u32;
+            place = child;
+        }
+        self.order[place] = item;
+        self.places[item as usize] = place as u32;
+    }
+
+    fn swim(&mut self, mut place: usize) {
+        while place > 0 && self.is_heavier(self.order[place], self.order[(place - 1) / 2]) {
+            self.exchange(place, (place - 1) / 2);
+            place = (place - 1) / 2;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    /// Random operations beside a plain list.
+    #[test]
+    fn agrees_with_a_list() {
+        const N: usize = 50;
+        let mut random = Random::new(3);
+        let (mut weights, mut order, mut places) = ([0.0; N], [0; N], [0; N]);
+        for weight in &mut weights {
+            *weight = (random.next_f32() * 20.0).floor();
+        }
+        let mut list: Vec<Option<f32>> = weights.iter().map(|&w| Some(w)).collect();
+        let mut heap = Heap::full(&mut weights, &mut order, &mut places);
+        for _ in 0..5000 {
+            let item = random.next_u32() as usize % N;
+            let weight = (random.next_f32() * 20.0).floor();
+            match random.next_u32() % 3 {
+                0 => {
+                    let heaviest = (0..N)
+                        .rev()
+                        .filter(|&i| list[i].is_some())
+                        .max_by(|&a, &b| list[a].partial_cmp(&list[b]).unwrap());
+                    assert_eq!(heap.pop(), heaviest);
+                    if let Some(item) = heaviest {
+                        list[item] = None;
+                    }
+                }
+                1 => {
+                    let changes = list[item].is_none_or(|old| weight > old);
+                    assert_eq!(heap.offer(item, weight), changes);
+                    if changes {
+                        list[item] = Some(weight);
+                    }
+                }
+                _ if list[item].is_some() => {
+                    heap.lighten(item, weight);
+                    list[item] = list[item].map(|old| old - weight);
+                }
+                _ => assert!(!heap.contains(item)),
+            }
+            assert_eq!(heap.len(), list.iter().flatten().count());
+        }
+        let mut left = heap.into_items().to_vec();
+        left.sort_unstable();
+        assert!(
+            left.iter()
+                .copied()
+                .eq((0..N as u32).filter(|&i| list[i as usize].is_some()))
+        );
+    }
+}

@@ -1,0 +1,4 @@
+//! From what a sensor or a file gives to what the method works on.
+
+pub mod normals;
+pub mod sampling;

@@ -1,0 +1,340 @@
+//! Poisson-disk samples of a mesh, to an exact count: weighted sample elimination (Yuksel 2015, "Sample
+//! Elimination for Generating Poisson Disk Sample Sets"). Names are Yuksel's.
+
+use crate::geometry::{Mesh, Point, Vector};
+use crate::heap::Heap;
+use crate::memory::{Arena, OutOfMemory, array_bytes, model_bytes};
+use crate::params::MAX_SAMPLES;
+use crate::random::Random;
+
+/// Candidates drawn for each sample that is kept: `M / N`. Yuksel's 5 spreads the samples to 0.70 of the best
+/// possible distance; 3 to 0.66, in 0.4 of the time.
+const OVERSAMPLING: usize = 3;
+/// Yuksel's `beta` and `gamma`, which limit how much candidates on top of each other weigh (eq. 5).
+const BETA: f32 = 0.65;
+const GAMMA: f32 = 1.5;
+
+/// Bytes of memory for [`sample`].
+pub const fn sample_bytes(count: usize) -> usize {
+    model_bytes(scratch_bytes(count))
+}
+
+/// Bytes of working memory for drawing `count` samples.
+pub(crate) const fn scratch_bytes(count: usize) -> usize {
+    let candidates = count.saturating_mul(OVERSAMPLING);
+    array_bytes::<Candidate>(candidates)
+        .saturating_mul(2)
+        .saturating_add(Cells::bytes(candidates))
+        .saturating_add(array_bytes::<u32>(candidates).saturating_mul(3))
+}
+
+/// Draws `points.len()` points from the surface of `mesh`, evenly spread, with the normals of their triangles.
+///
+/// `points` and `normals` have the same length; positions in metres. The same seed gives the same points, and a
+/// rigid motion of the mesh moves them along (up to rounding). `memory` holds [`sample_bytes`].
+pub fn sample(
+    mesh: &Mesh,
+    seed: u64,
+    points: &mut [[f32; 3]],
+    normals: &mut [[f32; 3]],
+    memory: &mut [u8],
+) -> Result<(), OutOfMemory> {
+    let scratch = Arena::new(memory, sample_bytes(points.len()))?;
+    let (points, normals) = (
+        bytemuck::cast_slice_mut(points),
+        bytemuck::cast_slice_mut(normals),
+    );
+    sample_into(mesh, seed, points, normals, scratch)
+}
+
+/// [`sample`], for callers that have an arena.
+pub(crate) fn sample_into(
+    mesh: &Mesh,
+    seed: u64,
+    points: &mut [Point],
+    normals: &mut [Vector],
+    mut scratch: Arena,
+) -> Result<(), OutOfMemory> {
+    let count = points.len();
+    let drawn = scratch.slice::<Candidate>(count * OVERSAMPLING)?;
+    let area = draw(mesh, seed, drawn);
+    // The largest radius that `count` disks on a plane of this area can have (section 3.1).
+    let r_max = libm::sqrtf(area / (2.0 * libm::sqrtf(3.0) * count.max(1) as f32));
+    let candidates = scratch.slice::<Candidate>(drawn.len())?;
+    let cells = Cells::sort(drawn, candidates, 2.0 * r_max, &mut scratch)?;
+    let kept = eliminate(candidates, &cells, count, r_max, &mut scratch)?;
+    for ((point, normal), &index) in points.iter_mut().zip(normals).zip(kept) {
+        let candidate = &candidates[index as usize];
+        *point = candidate.position.into();
+        *normal = crate::geometry::scaled_normal(&mesh.corners(candidate.triangle as usize)).normalize();
+    }
+    Ok(())
+}
+
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Candidate {
+    position: [f32; 3],
+    triangle: u32,
+}
+
+/// Draws candidates uniformly by area, in the order of the triangles, and returns the area in m².
+fn draw(mesh: &Mesh, seed: u64, candidates: &mut [Candidate]) -> f32 {
+    let normal_of = |t: u32| crate::geometry::scaled_normal(&mesh.corners(t as usize));
+    let total: f64 = mesh
+        .solid_triangles()
+        .map(|t| f64::from(normal_of(t).norm()) / 2.0)
+        .sum();
+    let mut random = Random::new(seed);
+    // One candidate in each of as many equal shares of the area, so that no part is left out by chance.
+    let share = total / candidates.len() as f64;
+    let (mut covered, mut drawn) = (0.0, 0);
+    let mut triangles = mesh.solid_triangles().peekable();
+    while let Some(triangle) = triangles.next() {
+        let normal = normal_of(triangle);
+        covered += f64::from(normal.norm()) / 2.0;
+        let [a, b, c] = mesh.corners(triangle as usize);
+        let is_last = triangles.peek().is_none();
+        while drawn < candidates.len() && (is_last || (drawn as f64 + 0.5) * share < covered) {
+            let (s, t) = (libm::sqrtf(random.next_f32()), random.next_f32());
+            let position = a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t);
+            candidates[drawn] = Candidate {
+                position: position.into(),
+                triangle,
+            };
+            drawn += 1;
+        }
+    }
+    total as f32
+}
+
+/// A sparse grid of cubes as wide as the largest distance that matters.
+///
+/// Cubes are numbered by z, then y, then x, and candidates sorted by the number of their cube, so that the three
+/// cubes side by side along x hold neighbours in the order. Nine such rows surround a candidate.
+struct Cells<'s> {
+    /// The cube of each candidate, as an index into the cubes that hold any.
+    cell_of: &'s [u32],
+    /// For each such cube, where its candidates begin; one entry more than cubes.
+    starts: &'s [u32],
+    /// For each such cube, the first cube of each of the nine rows around it.
+    rows: &'s [[u32; 9]],
+    /// The numbers of the cubes.
+    numbers: &'s [u64],
+    width: f32,
+}
+
+/// Bits of a cube's number for each axis, and of a candidate's index, which share a sort key. Cubes beyond the
+/// last are taken as the last, which costs time and no more.
+const AXIS_BITS: u32 = 14;
+const INDEX_BITS: u32 = 22;
+const _: () = assert!(3 * AXIS_BITS + INDEX_BITS == u64::BITS);
+const _: () = assert!(MAX_SAMPLES * OVERSAMPLING < 1 << INDEX_BITS);
+
+const LAST_CELL: u64 = (1 << AXIS_BITS) - 1;
+
+fn number([x, y, z]: [u64; 3]) -> u64 {
+    (z << AXIS_BITS | y) << AXIS_BITS | x
+}
+
+impl<'s> Cells<'s> {
+    const fn bytes(candidates: usize) -> usize {
+        array_bytes::<u64>(candidates)
+            .saturating_add(array_bytes::<u32>(candidates))
+            .saturating_add(array_bytes::<u32>(candidates.saturating_add(1)))
+            .saturating_add(array_bytes::<[u32; 9]>(candidates))
+    }
+
+    /// Sorts `drawn` into `candidates`.
+    fn sort(
+        drawn: &[Candidate],
+        candidates: &mut [Candidate],
+        width: f32,
+        scratch: &mut Arena<'s>,
+    ) -> Result<Self, OutOfMemory> {
+        let numbers = scratch.slice::<u64>(drawn.len())?;
+        let cell_of = scratch.slice::<u32>(drawn.len())?;
+        let starts = scratch.slice::<u32>(drawn.len() + 1)?;
+        let rows = scratch.slice::<[u32; 9]>(drawn.len())?;
+
+        let low = drawn.iter().fold(Point::from([f32::INFINITY; 3]), |low, c| {
+            low.inf(&c.position.into())
+        });
+        // Sort keys first: number and index.
+        for (index, (key, candidate)) in numbers.iter_mut().zip(drawn).enumerate() {
+            let offset = (Point::from(candidate.position) - low) / width;
+            let cell = offset.map(|x| (x as u64).min(LAST_CELL)).into();
+            *key = number(cell) << INDEX_BITS | index as u64;
+        }
+        numbers.sort_unstable();
+        let mut cells = 0;
+        for place in 0..drawn.len() {
+            let key = numbers[place];
+            candidates[place] = drawn[(key & ((1 << INDEX_BITS) - 1)) as usize];
+            // Numbers move to the front, over keys that were read.
+            if place == 0 || numbers[cells - 1] != key >> INDEX_BITS {
+                (numbers[cells], starts[cells]) = (key >> INDEX_BITS, place as u32);
+                cells += 1;
+            }
+            cell_of[place] = cells as u32 - 1;
+        }
+        starts[cells] = drawn.len() as u32;
+        let (numbers, rows) = (&numbers[..cells], &mut rows[..cells]);
+        for row in 0..9 {
+            // Both the cubes and the rows beside them ascend, so one pass finds all.
+            let mut first = 0;
+            for (cell, rows) in rows.iter_mut().enumerate() {
+                let target = row_number(numbers[cell], row);
+                while first < cells && numbers[first] < target {
+                    first += 1;
+                }
+                rows[row] = first as u32;
+            }
+        }
+        Ok(Self {
+            cell_of,
+            starts: &starts[..=cells],
+            rows,
+            numbers,
+            width,
+        })
+    }
+
+    /// Calls `visit` for each other candidate closer to candidate `index` than the width, with the distance.
+    fn for_each_neighbour(&self, candidates: &[Candidate], index: usize, mut visit: impl FnMut(usize, f32)) {
+        let position = Point::from(candidates[index].position);
+        let cell = self.cell_of[index] as usize;
+        for (row, &first) in self.rows[cell].iter().enumerate() {
+            let end = row_number(self.numbers[cell], row) + 2;
+            let mut last = first as usize;
+            while last < self.numbers.len() && self.numbers[last] <= end {
+                last += 1;
+            }
+            for other in self.starts[first as usize] as usize..self.starts[last] as usize {
+                let distance_squared = (Point::from(candidates[other].position) - position).norm_squared();
+                if distance_squared < self.width * self.width && other != index {
+                    visit(other, libm::sqrtf(distance_squared));
+                }
+            }
+        }
+    }
+}
+
+/// One less than the number of the cube in row `row` straight beside cube `number`: where the row begins.
+fn row_number(number: u64, row: usize) -> u64 {
+    let (dy, dz) = (row as u64 % 3, row as u64 / 3);
+    // Around the border numbers run over into other rows or below zero; those hold nothing that is close, and
+    // distances are checked anyway.
+    (number + (dz << (2 * AXIS_BITS)) + (dy << AXIS_BITS))
+        .saturating_sub((1 << (2 * AXIS_BITS)) + (1 << AXIS_BITS) + 1)
+}
+
+/// Removes the candidate with the heaviest neighbours until `count` are left, and returns those.
+fn eliminate<'s>(
+    candidates: &[Candidate],
+    cells: &Cells,
+    count: usize,
+    r_max: f32,
+    scratch: &mut Arena<'s>,
+) -> Result<&'s [u32], OutOfMemory> {
+    let total = candidates.len();
+    let weights = scratch.slice::<f32>(total)?;
+    let order = scratch.slice::<u32>(total)?;
+    let places = scratch.slice::<u32>(total)?;
+    let fraction = count as f32 / total.max(1) as f32;
+    let r_min = r_max * BETA * (1.0 - libm::powf(fraction, GAMMA));
+    // Eq. 4 and 6, with the exponent alpha = 8.
+    let weight = |distance: f32| {
+        let base = 1.0 - distance.max(2.0 * r_min) / (2.0 * r_max);
+        let square = base * base;
+        let fourth = square * square;
+        fourth * fourth
+    };
+    for (index, sum) in weights.iter_mut().enumerate() {
+        cells.for_each_neighbour(candidates, index, |_, distance| *sum += weight(distance));
+    }
+    let mut heap = Heap::full(weights, order, places);
+    while heap.len() > count
+        && let Some(heaviest) = heap.pop()
+    {
+        cells.for_each_neighbour(candidates, heaviest, |other, distance| {
+            if heap.contains(other) {
+                heap.lighten(other, weight(distance));
+            }
+        });
+    }
+    Ok(heap.into_items())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_shapes;
+
+    fn samples_of(mesh: &Mesh, count: usize, seed: u64) -> (Vec<Point>, Vec<Vector>) {
+        let (mut points, mut normals) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
+        sample(
+            mesh,
+            seed,
+            &mut points,
+            &mut normals,
+            &mut vec![0; sample_bytes(count)],
+        )
+        .unwrap();
+        (
+            points.into_iter().map(Into::into).collect(),
+            normals.into_iter().map(Into::into).collect(),
+        )
+    }
+
+    #[test]
+    fn exact_count_on_the_surface_spread_out_with_normals() {
+        let torus = test_shapes::torus(0.04, 0.01, 96, 32);
+        let mesh = torus.mesh();
+        for count in [1, 2, 10, 500, 2000] {
+            let (points, normals) = samples_of(&mesh, count, 1);
+            for (point, normal) in points.iter().zip(&normals) {
+                let ring = Vector::new(point.x, point.y, 0.0).normalize() * 0.04;
+                let outward = point.coords - ring;
+                assert!((outward.norm() - 0.01).abs() < 1e-4, "off the surface");
+                assert!((normal.norm() - 1.0).abs() < 1e-5 && normal.dot(&outward.normalize()) > 0.98);
+            }
+            // Disks packed as densely as can be are 2 r_max apart; Yuksel reports 0.6 to 0.75 of that. With few
+            // samples the disks are wider than the tube, which is then no plane.
+            let area = 4.0 * core::f32::consts::PI.powi(2) * 0.04 * 0.01;
+            let r_max = (area / (2.0 * 3_f32.sqrt() * count as f32)).sqrt();
+            let closest = (0..points.len())
+                .flat_map(|i| (0..i).map(move |j| (i, j)))
+                .map(|(i, j)| (points[i] - points[j]).norm())
+                .fold(f32::INFINITY, f32::min);
+            assert!(
+                count < 500 || closest > 0.6 * 2.0 * r_max,
+                "{count}: {closest} of {}",
+                2.0 * r_max
+            );
+        }
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_bytes() {
+        let torus = test_shapes::torus(0.04, 0.01, 48, 16);
+        assert_eq!(
+            samples_of(&torus.mesh(), 300, 5),
+            samples_of(&torus.mesh(), 300, 5)
+        );
+        assert_ne!(
+            samples_of(&torus.mesh(), 300, 5),
+            samples_of(&torus.mesh(), 300, 6)
+        );
+    }
+
+    #[test]
+    fn every_part_gets_its_share_of_the_samples() {
+        // Two squares, one of four times the area, far apart and finely divided.
+        let mut shape = test_shapes::grid(1.0, 40);
+        shape.append(&test_shapes::grid(0.5, 3), Vector::new(100.0, 0.0, 0.0));
+        let (points, _) = samples_of(&shape.mesh(), 1000, 2);
+        let small = points.iter().filter(|p| p.x > 50.0).count();
+        assert!((180..=220).contains(&small), "{small}");
+    }
+}

@@ -1,0 +1,85 @@
+//! Shapes with known answers, for tests.
+
+use crate::geometry::{Mesh, Point, Vector};
+
+/// A mesh that owns its data.
+#[derive(Clone, Default)]
+pub(crate) struct Shape {
+    pub(crate) vertices: Vec<[f32; 3]>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+impl Shape {
+    pub(crate) fn mesh(&self) -> Mesh<'_> {
+        Mesh::new(&self.vertices, &self.triangles).unwrap()
+    }
+
+    pub(crate) fn map(&self, f: impl Fn(Point) -> Point) -> Self {
+        let vertices = self.vertices.iter().map(|v| f((*v).into()).into()).collect();
+        Self {
+            vertices,
+            triangles: self.triangles.clone(),
+        }
+    }
+
+    pub(crate) fn append(&mut self, other: &Self, offset: Vector) {
+        let base = self.vertices.len() as u32;
+        self.vertices.extend(other.map(|p| p + offset).vertices);
+        self.triangles
+            .extend(other.triangles.iter().map(|t| t.map(|v| v + base)));
+    }
+}
+
+/// A closed band of quads between `rows` rings of `columns` vertices; rings close on themselves, and the band on
+/// its first ring if `wrap`.
+fn band(rows: u32, columns: u32, wrap: bool, vertex: impl Fn(u32, u32) -> [f32; 3]) -> Shape {
+    let vertices = (0..rows)
+        .flat_map(|i| (0..columns).map(move |j| (i, j)))
+        .map(|(i, j)| vertex(i, j))
+        .collect();
+    let triangles = (0..if wrap { rows } else { rows - 1 })
+        .flat_map(|i| (0..columns).map(move |j| (i, j)))
+        .flat_map(|(i, j)| {
+            let at = |i: u32, j: u32| i % rows * columns + j % columns;
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        })
+        .collect();
+    Shape { vertices, triangles }
+}
+
+fn turn(step: u32, steps: u32) -> (f32, f32) {
+    (core::f32::consts::TAU * step as f32 / steps as f32).sin_cos()
+}
+
+/// A torus around the z axis.
+pub(crate) fn torus(ring: f32, tube: f32, rows: u32, columns: u32) -> Shape {
+    band(rows, columns, true, |i, j| {
+        let ((sin_i, cos_i), (sin_j, cos_j)) = (turn(i, rows), turn(j, columns));
+        let radius = ring + tube * cos_j;
+        [radius * cos_i, radius * sin_i, tube * sin_j]
+    })
+}
+
+/// A ball around the origin.
+pub(crate) fn ball(radius: f32, rows: u32, columns: u32) -> Shape {
+    // The poles are rings of coinciding vertices; their triangles without area are part of the test.
+    band(rows + 1, columns, false, |i, j| {
+        let (sin_i, cos_i) = turn(i, 2 * rows);
+        let (sin_j, cos_j) = turn(j, columns);
+        [radius * sin_i * cos_j, radius * sin_i * sin_j, radius * cos_i]
+    })
+}
+
+/// A flat square in the x-y plane, from the origin, `n` by `n` quads.
+pub(crate) fn grid(edge: f32, n: u32) -> Shape {
+    let at = |i: u32| edge * i as f32 / n as f32;
+    let vertices = (0..=n)
+        .flat_map(|i| (0..=n).map(move |j| [at(i), at(j), 0.0]))
+        .collect();
+    let triangles = (0..n)
+        .flat_map(|i| (0..n).map(move |j| (i * (n + 1) + j, (i + 1) * (n + 1) + j)))
+        .flat_map(|(a, b)| [[a, b, b + 1], [a, b + 1, a + 1]])
+        .collect();
+    Shape { vertices, triangles }
+}
