@@ -200,14 +200,14 @@ fn size(kind: &ScalarType) -> usize {
     }
 }
 
-/// The loader quotes whole lines of the file; the first sentence is enough.
+/// The loader names the line and quotes the whole of it; what stands between is enough.
 fn first_line(message: &str) -> String {
-    message
-        .lines()
-        .next()
-        .unwrap_or_default()
-        .trim_end_matches('.')
-        .to_string()
+    let message = message.lines().next().unwrap_or_default();
+    let message = match message.split_once(": ") {
+        Some((line, message)) if line.starts_with("Line ") => message,
+        _ => message,
+    };
+    message.trim_end_matches('.').to_string()
 }
 
 /// The body of a text PLY: a row a line.

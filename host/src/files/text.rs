@@ -13,6 +13,17 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, str>)>
         .map(|(i, line)| (i + 1, String::from_utf8_lossy(line.trim_ascii())))
 }
 
+/// What stands before a `#`, unless it is the one in `1.#QNAN`.
+pub(super) fn before_comment(line: &str) -> &str {
+    match line
+        .match_indices('#')
+        .find(|(at, _)| !line[..*at].ends_with('.'))
+    {
+        Some((at, _)) => &line[..at],
+        None => line,
+    }
+}
+
 /// A number, or `None` if the word is none. What C libraries print for NaN (`-nan(ind)`, `1.#QNAN`) is NaN.
 pub(super) fn number(word: &str) -> Option<f32> {
     word.parse().ok().or_else(|| {

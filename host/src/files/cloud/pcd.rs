@@ -91,7 +91,25 @@ fn check_lengths(source: &Source<'_>, meta: &PcdMeta, body: usize) -> Result<(),
         return Err(too_few("more than 2^64"));
     };
     match meta.data {
-        DataKind::Ascii if total > held + 1 => Err(too_few(&format!("at least {total}"))),
+        DataKind::Ascii => {
+            let lines = source.bytes[body..]
+                .split(|b| *b == b'\n')
+                .filter(|line| !line.trim_ascii().is_empty())
+                .count() as u64;
+            if lines < meta.num_points {
+                let reason = format!(
+                    "the header promises {} points, but {lines} lines follow it",
+                    meta.num_points
+                );
+                return Err(source.truncated(Place::Whole, reason));
+            }
+            // The lines are there, but COUNT may ask for more numbers than they can hold.
+            if total > held + 1 {
+                Err(too_few(&format!("at least {total}")))
+            } else {
+                Ok(())
+            }
+        }
         DataKind::Binary if total > held => Err(too_few(&total.to_string())),
         DataKind::BinaryCompressed => {
             let word = |at: usize| {

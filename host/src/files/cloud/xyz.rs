@@ -1,7 +1,7 @@
 //! Text with a point a line: XYZ, PTS and their like.
 
 use super::super::source::Source;
-use super::super::text::{lines, number, short};
+use super::super::text::{before_comment, lines, number, short};
 use super::super::{FileError, Place};
 use super::RawCloud;
 
@@ -15,8 +15,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
     let mut claimed = None;
     for (line, text) in lines(&source.bytes) {
         let malformed = |reason: String| source.malformed(Place::Line(line), reason);
-        let text = text.split('#').next().unwrap_or_default();
-        let text = text.split("//").next().unwrap_or_default();
+        let text = before_comment(&text).split("//").next().unwrap_or_default();
         let words = || text.split([' ', '\t', ',', ';']).filter(|word| !word.is_empty());
         let count = words().count();
         if count == 0 {
@@ -67,7 +66,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
         points: three(0),
         ..RawCloud::default()
     };
-    if width == 6 && !rows.iter().all(|row| is_colour(&row[3..])) {
+    if width == 6 && !are_colours(&rows) {
         cloud.normals = Some(three(3));
     } else if width > 3 {
         cloud.notes.push(format!(
@@ -87,8 +86,11 @@ fn expected(word: &str) -> String {
     format!("expected a number, not \"{}\"", short(word))
 }
 
-/// Whole numbers from 0 to 255. Normals along an axis are too, but not without a length of one.
-fn is_colour(rgb: &[f32]) -> bool {
-    let is_byte = |x: &f32| x.fract() == 0.0 && (0.0..=255.0).contains(x);
-    rgb.iter().all(is_byte) && rgb.iter().map(|x| x * x).sum::<f32>() != 1.0
+/// Whole numbers from 0 to 255, and not all as small as normals are.
+fn are_colours(rows: &[&[f32]]) -> bool {
+    let mut values = rows.iter().flat_map(|row| &row[3..6]);
+    values
+        .clone()
+        .all(|x| x.fract() == 0.0 && (0.0..=255.0).contains(x))
+        && values.any(|x| *x > 1.0)
 }

@@ -5,7 +5,7 @@
 //! errors; obj 0.10 loses the faces before an empty `g`, panics at some non-ASCII group names and refuses `vt` with one number.
 
 use super::super::source::Source;
-use super::super::text::{lines, short, three};
+use super::super::text::{before_comment, lines, number, short, three};
 use super::super::{FileError, Place};
 use super::RawMesh;
 
@@ -31,15 +31,14 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
     Ok(mesh)
 }
 
-fn statement(mesh: &mut RawMesh, line: &str, number: usize) -> Result<(), String> {
-    let line = line.split('#').next().unwrap_or_default();
-    let mut words = line.split_ascii_whitespace();
+fn statement(mesh: &mut RawMesh, line: &str, line_number: usize) -> Result<(), String> {
+    let mut words = before_comment(line).split_ascii_whitespace();
     match words.next() {
         Some("v") => {
             let vertex = three(&mut words)?;
             // One more number is a weight; three more are a colour, which is not needed.
             let weight = match (words.next(), words.next()) {
-                (Some(word), None) => super::super::text::number(word).ok_or("the weight is not a number")?,
+                (Some(word), None) => number(word).ok_or("the weight is not a number")?,
                 _ => 1.0,
             };
             mesh.vertices.push(if weight == 1.0 {
@@ -58,7 +57,7 @@ fn statement(mesh: &mut RawMesh, line: &str, number: usize) -> Result<(), String
                     corners.len()
                 ));
             }
-            mesh.face(corners, number);
+            mesh.face(corners, line_number);
         }
         // Normals, textures, groups, materials, lines, curves: not part of the shape.
         _ => {}

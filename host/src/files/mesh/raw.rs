@@ -105,6 +105,7 @@ impl RawMesh {
             }
             let before = triangles.len();
             triangulator.append(&vertices, &ring, &mut triangles);
+            dropped += usize::from(triangles.len() == before);
             thin += triangles[before..]
                 .iter()
                 .filter(|t| !has_area(&vertices, t))

@@ -6,8 +6,9 @@
 mod accessor;
 mod buffers;
 
+use gltf::json::validation::{Checked, Error as Fault};
 use gltf::mesh::Mode;
-use gltf::{Document, Node, Primitive};
+use gltf::{Document, Node, Primitive, Semantic};
 use nalgebra::{Matrix4, Point3};
 
 use super::super::source::Source;
@@ -49,24 +50,48 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
         .bytes
         .strip_prefix(b"\xef\xbb\xbf")
         .unwrap_or(&source.bytes);
-    let mut gltf = gltf::Gltf::from_slice(bytes).map_err(|e| malformed(reason(&e)))?;
-    let blob = gltf.blob.take();
+    let gltf::Gltf { document, blob } =
+        gltf::Gltf::from_slice_without_validation(bytes).map_err(|e| malformed(reason(&e)))?;
+    let document = validate(document).map_err(malformed)?;
     let mut scene = Scene {
         source,
-        buffers: buffers::read(source, &gltf.document, blob)?,
+        buffers: buffers::read(source, &document, blob)?,
         mesh: RawMesh::default(),
         others: 0,
         skinned: 0,
     };
-    scene.walk(&gltf.document)?;
+    scene.walk(&document)?;
     Ok(scene.finish())
+}
+
+/// Has the crate check every index and type of the tree, after two of its own weaknesses: it looks a POSITION's accessor up
+/// before it knows that there is one, and it insists on bounds, which exporters forget and nobody here needs.
+fn validate(document: Document) -> Result<Document, String> {
+    let mut root = document.into_json();
+    for (number, mesh) in root.meshes.iter().enumerate() {
+        for primitive in &mesh.primitives {
+            let Some(positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
+                continue;
+            };
+            let Some(accessor) = root.accessors.get_mut(positions.value()) else {
+                return Err(format!(
+                    "mesh {number} asks for accessor {}, which is missing",
+                    positions.value()
+                ));
+            };
+            for bound in [&mut accessor.min, &mut accessor.max] {
+                bound.get_or_insert_with(|| vec![0.0; 3].into());
+            }
+        }
+    }
+    Document::from_json(root).map_err(|e| reason(&e))
 }
 
 /// What the crate says; of a long list the first entry.
 fn reason(error: &gltf::Error) -> String {
     match error {
         gltf::Error::Validation(list) => match list.first() {
-            Some((path, gltf::json::validation::Error::Unsupported)) => {
+            Some((path, Fault::Unsupported)) => {
                 format!("{path} names an extension that is not read here")
             }
             Some((path, error)) => format!("{path}: {error}"),
@@ -141,7 +166,7 @@ impl Scene<'_> {
             self.others += 1;
             return Ok(());
         }
-        let Some(positions) = primitive.get(&gltf::Semantic::Positions) else {
+        let Some(positions) = primitive.get(&Semantic::Positions) else {
             return Err(malformed("it has no POSITION".into()));
         };
         let positions = accessor::positions(&positions, &self.buffers).map_err(malformed)?;
