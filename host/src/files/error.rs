@@ -34,7 +34,7 @@ impl fmt::Display for Place {
 
 /// Why a file could not be read.
 ///
-/// The message says what, where and how to mend it.
+/// The message says what, where and how to mend it. Every variant names its file.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum FileError {

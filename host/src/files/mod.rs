@@ -6,7 +6,7 @@
 //! | mesh  | `stl`      | text and binary |
 //! | mesh  | `ply`      | text and binary of both byte orders |
 //! | mesh  | `glb`, `gltf` | every node of every scene, transforms applied |
-//! | cloud | `ply`      | without faces |
+//! | cloud | `ply`, `obj` | without faces |
 //! | cloud | `pcd`      | text, binary and compressed; missing (NaN) points left out |
 //! | cloud | `xyz`, `txt`, `pts` | `x y z` or `x y z nx ny nz` a line |
 //!
