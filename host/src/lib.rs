@@ -1,1 +1,3 @@
 //! hangpose on a computer with files.
+
+pub mod files;

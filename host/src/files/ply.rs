@@ -1,0 +1,284 @@
+//! PLY, which holds a mesh or a cloud.
+//!
+//! ply-rs-bw reads the header and binary bodies. Text bodies are read here: its grammar for numbers knows neither `nan`,
+//! which must be told from nonsense, nor `.5`, `1.` or an empty line.
+
+use std::io::Cursor;
+
+use ply_rs_bw::parser::{Parser, Reader};
+use ply_rs_bw::ply::{
+    ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
+};
+
+use super::mesh::RawMesh;
+use super::source::Source;
+use super::text::{lines, number, short};
+use super::{FileError, Place};
+
+pub(super) struct Ply {
+    /// Vertices and faces.
+    pub(super) mesh: RawMesh,
+    /// A normal for each vertex, if there are any.
+    pub(super) normals: Option<Vec<[f32; 3]>>,
+}
+
+const NAMES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
+
+/// A vertex or a face; what is of no interest is not kept.
+#[derive(Default)]
+struct Row {
+    numbers: [f32; 6],
+    indices: Vec<i64>,
+}
+
+impl PropertyAccess for Row {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        if let Some(slot) = NAMES.iter().position(|known| *known == name) {
+            return match property.to_f32_lossy() {
+                Some(value) => {
+                    self.numbers[slot] = value;
+                    PropertyAccessResult::Set
+                }
+                None => PropertyAccessResult::UnsupportedType,
+            };
+        }
+        if !is_indices(name) {
+            return PropertyAccessResult::Ignored;
+        }
+        self.indices = match property {
+            Property::ListChar(list) => list.into_iter().map(i64::from).collect(),
+            Property::ListUChar(list) => list.into_iter().map(i64::from).collect(),
+            Property::ListShort(list) => list.into_iter().map(i64::from).collect(),
+            Property::ListUShort(list) => list.into_iter().map(i64::from).collect(),
+            Property::ListInt(list) => list.into_iter().map(i64::from).collect(),
+            Property::ListUInt(list) => list.into_iter().map(i64::from).collect(),
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+fn is_indices(name: &str) -> bool {
+    name == "vertex_indices" || name == "vertex_index"
+}
+
+pub(super) fn read(source: &Source<'_>) -> Result<Ply, FileError> {
+    let parser = Parser::<Row>::new();
+    let mut reader = Reader::new(Cursor::new(source.bytes.as_slice()));
+    let header = parser.read_header(&mut reader).map_err(|e| {
+        let place = e.line().map_or(Place::Whole, Place::Line);
+        match e.kind() {
+            std::io::ErrorKind::UnexpectedEof => source.truncated(place, "the header has no end_header"),
+            _ => source.malformed(place, first_line(&e.to_string())),
+        }
+    })?;
+    let body = reader.get_ref().position() as usize;
+    check_lengths(source, &header, body)?;
+
+    let mut ply = Ply {
+        mesh: RawMesh::default(),
+        normals: None,
+    };
+    let mut text = Text::new(source, body);
+    for element in header.elements.values() {
+        let rows = match header.encoding {
+            Encoding::Ascii => text.rows(element)?,
+            _ => {
+                let rows = parser.read_payload_for_element(&mut reader, element, &header);
+                rows.map_err(|e| match e.kind() {
+                    std::io::ErrorKind::UnexpectedEof => {
+                        source.truncated(Place::Byte(source.bytes.len()), first_line(&e.to_string()))
+                    }
+                    _ => source.malformed(
+                        Place::Byte(reader.get_ref().position() as usize),
+                        first_line(&e.to_string()),
+                    ),
+                })?
+                .into_iter()
+                .map(|row| (row, 0))
+                .collect()
+            }
+        };
+        match element.name.as_str() {
+            "vertex" => ply.vertices(source, element, rows)?,
+            "face" => ply.faces(source, element, rows)?,
+            "tristrips" => {
+                return Err(source.malformed(
+                    Place::Part("element tristrips".into()),
+                    "triangle strips are not read here",
+                ));
+            }
+            _ => {}
+        }
+    }
+    Ok(ply)
+}
+
+impl Ply {
+    fn vertices(
+        &mut self,
+        source: &Source<'_>,
+        element: &ElementDef,
+        rows: Vec<(Row, usize)>,
+    ) -> Result<(), FileError> {
+        let has = |names: &[&str]| names.iter().all(|name| element.properties.contains_key(*name));
+        if !has(&NAMES[..3]) {
+            return Err(source.malformed(Place::Part("element vertex".into()), "it lacks x, y or z"));
+        }
+        self.mesh.vertices = rows
+            .iter()
+            .map(|(row, _)| [0, 1, 2].map(|k| row.numbers[k]))
+            .collect();
+        self.normals = has(&NAMES[3..]).then(|| {
+            rows.iter()
+                .map(|(row, _)| [3, 4, 5].map(|k| row.numbers[k]))
+                .collect()
+        });
+        Ok(())
+    }
+
+    fn faces(
+        &mut self,
+        source: &Source<'_>,
+        element: &ElementDef,
+        rows: Vec<(Row, usize)>,
+    ) -> Result<(), FileError> {
+        if element.count > 0 && !element.properties.keys().any(|name| is_indices(name)) {
+            return Err(source.malformed(Place::Part("element face".into()), "it lacks vertex_indices"));
+        }
+        for (row, line) in rows {
+            self.mesh.face(row.indices, line);
+        }
+        Ok(())
+    }
+}
+
+/// Refuses counts that the file is too short for, before anything is read or reserved.
+fn check_lengths(source: &Source<'_>, header: &Header, body: usize) -> Result<(), FileError> {
+    let held = source.bytes.len() - body;
+    let mut wanted = 0_usize;
+    for element in header.elements.values() {
+        let size = match header.encoding {
+            // A digit and a space each.
+            Encoding::Ascii => 2 * element.properties.len(),
+            // Of a list, its length alone is certain.
+            _ => element
+                .properties
+                .values()
+                .map(|property| match &property.data_type {
+                    PropertyType::Scalar(kind) | PropertyType::List(kind, _) => size(kind),
+                })
+                .sum(),
+        };
+        let name = &element.name;
+        if size == 0 && element.count > 0 {
+            return Err(source.malformed(Place::Part(format!("element {name}")), "it has no properties"));
+        }
+        wanted = wanted.saturating_add(size.saturating_mul(element.count));
+        // The last number of a text needs no space after it.
+        if wanted > held + 1 {
+            let reason = format!(
+                "the header promises {} of element {name}, for which {held} bytes after the header are too few",
+                element.count
+            );
+            return Err(source.truncated(Place::Byte(body), reason));
+        }
+    }
+    Ok(())
+}
+
+fn size(kind: &ScalarType) -> usize {
+    match kind {
+        ScalarType::Char | ScalarType::UChar => 1,
+        ScalarType::Short | ScalarType::UShort => 2,
+        ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
+        ScalarType::Double => 8,
+    }
+}
+
+/// The loader names the line and quotes the whole of it; what stands between is enough.
+fn first_line(message: &str) -> String {
+    let message = message.lines().next().unwrap_or_default();
+    let message = match message.split_once(": ") {
+        Some((line, message)) if line.starts_with("Line ") => message,
+        _ => message,
+    };
+    message.trim_end_matches('.').to_string()
+}
+
+/// The body of a text PLY: a row a line.
+struct Text<'a> {
+    source: &'a Source<'a>,
+    lines: Box<dyn Iterator<Item = (usize, std::borrow::Cow<'a, str>)> + 'a>,
+}
+
+impl<'a> Text<'a> {
+    fn new(source: &'a Source<'a>, body: usize) -> Self {
+        let before = source.bytes[..body].iter().filter(|b| **b == b'\n').count();
+        let lines = lines(&source.bytes[body..]).map(move |(n, line)| (n + before, line));
+        Self {
+            source,
+            lines: Box::new(lines.filter(|(_, line)| !line.is_empty())),
+        }
+    }
+
+    fn rows(&mut self, element: &ElementDef) -> Result<Vec<(Row, usize)>, FileError> {
+        let mut rows = Vec::with_capacity(element.count);
+        for i in 0..element.count {
+            let Some((line, text)) = self.lines.next() else {
+                let reason = format!(
+                    "the header promises {} of element {}, but there are {i}",
+                    element.count, element.name
+                );
+                return Err(self.source.truncated(Place::Whole, reason));
+            };
+            let row =
+                row(element, &text).map_err(|reason| self.source.malformed(Place::Line(line), reason))?;
+            rows.push((row, line));
+        }
+        Ok(rows)
+    }
+}
+
+fn row(element: &ElementDef, text: &str) -> Result<Row, String> {
+    let mut words = text.split_ascii_whitespace();
+    let mut row = Row::default();
+    for (name, property) in &element.properties {
+        let word = words
+            .next()
+            .ok_or_else(|| format!("{name} of element {} is missing", element.name))?;
+        let nonsense =
+            |word: &str| format!("{name} of element {} cannot be \"{}\"", element.name, short(word));
+        match property.data_type {
+            PropertyType::Scalar(_) => {
+                let value = number(word).ok_or_else(|| nonsense(word))?;
+                if let Some(slot) = NAMES.iter().position(|known| known == name) {
+                    row.numbers[slot] = value;
+                }
+            }
+            PropertyType::List(..) => {
+                let length: usize = word.parse().map_err(|_| nonsense(word))?;
+                for i in 0..length {
+                    let word = words
+                        .next()
+                        .ok_or_else(|| format!("{name} promises {length} numbers, but has {i}"))?;
+                    if is_indices(name) {
+                        row.indices.push(word.parse().map_err(|_| nonsense(word))?);
+                    }
+                }
+            }
+        }
+    }
+    match words.next() {
+        Some(word) => Err(format!(
+            "\"{}\" is more than the header declares for element {}",
+            short(word),
+            element.name
+        )),
+        None => Ok(row),
+    }
+}

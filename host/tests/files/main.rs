@@ -1,0 +1,8 @@
+//! The file readers against files written by hand, whose content is known.
+
+mod clouds;
+mod errors;
+mod garbage;
+mod meshes;
+mod polygons;
+mod samples;
