@@ -23,11 +23,7 @@ impl<'a, T: Copy> Best<'a, T> {
 
     /// The item that makes way next, if the list is full.
     pub(crate) fn next_to_go(&self) -> Option<&T> {
-        if self.len == self.slots.len() {
-            self.slots.last()
-        } else {
-            None
-        }
+        if self.len == self.slots.len() { self.slots.last() } else { None }
     }
 
     pub(crate) fn into_slice(self) -> &'a mut [T] {

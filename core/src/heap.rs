@@ -17,12 +17,7 @@ impl<'s> Heap<'s> {
         for (index, (slot, place)) in order.iter_mut().zip(places.iter_mut()).enumerate() {
             (*slot, *place) = (index as u32, index as u32);
         }
-        Self {
-            weights,
-            order,
-            places,
-            len: 0,
-        }
+        Self { weights, order, places, len: 0 }
     }
 
     /// A heap of all items.
@@ -162,10 +157,6 @@ mod tests {
         }
         let mut left = heap.into_items().to_vec();
         left.sort_unstable();
-        assert!(
-            left.iter()
-                .copied()
-                .eq((0..N as u32).filter(|&i| list[i as usize].is_some()))
-        );
+        assert!(left.iter().copied().eq((0..N as u32).filter(|&i| list[i as usize].is_some())));
     }
 }

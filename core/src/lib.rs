@@ -40,7 +40,7 @@
 //! # let points: Vec<[f32; 3]> = normals.iter().zip(0..)
 //! #     .map(|(n, i)| [0.004 * n[0], 0.001 * (i / 30) as f32, 0.004 * n[2]]).collect();
 //!
-//! let params = Params { samples: 2_000, ..Params::default() };
+//! let params = Params::default();
 //! let monitor = Monitor::new();
 //!
 //! let mesh = Mesh::new(&vertices, &triangles)?;

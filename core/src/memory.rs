@@ -63,15 +63,10 @@ impl<'m> Arena<'m> {
     /// Takes over `memory`, or says that it is smaller than `needed` bytes.
     pub(crate) fn new(memory: &'m mut [u8], needed: usize) -> Result<Self, OutOfMemory> {
         if memory.len() < needed {
-            return Err(OutOfMemory {
-                needed,
-                given: memory.len(),
-            });
+            return Err(OutOfMemory { needed, given: memory.len() });
         }
         let skip = memory.as_ptr().align_offset(ALIGNMENT).min(memory.len());
-        Ok(Self {
-            free: &mut memory[skip..],
-        })
+        Ok(Self { free: &mut memory[skip..] })
     }
 
     /// `count` zeroed values that live as long as the memory.
@@ -79,10 +74,7 @@ impl<'m> Arena<'m> {
         const { assert!(align_of::<T>() <= ALIGNMENT && size_of::<T>() > 0) };
         let bytes = array_bytes::<T>(count);
         if bytes > self.free.len() {
-            return Err(OutOfMemory {
-                needed: bytes,
-                given: self.free.len(),
-            });
+            return Err(OutOfMemory { needed: bytes, given: self.free.len() });
         }
         let (taken, rest) = core::mem::take(&mut self.free).split_at_mut(bytes);
         self.free = rest;
@@ -119,10 +111,7 @@ mod tests {
             bytes.fill(255);
             words.fill(u64::MAX);
             floats.fill(f32::NAN);
-            assert!(
-                bytes == [255; 3] && words == [u64::MAX; 5],
-                "slices overlap at offset {offset}"
-            );
+            assert!(bytes == [255; 3] && words == [u64::MAX; 5], "slices overlap at offset {offset}");
         }
     }
 
@@ -139,13 +128,7 @@ mod tests {
     #[test]
     fn too_small_names_both_sizes() {
         let error = Arena::new(&mut [0; 10], 11).err().unwrap();
-        assert_eq!(
-            error,
-            OutOfMemory {
-                needed: 11,
-                given: 10
-            }
-        );
+        assert_eq!(error, OutOfMemory { needed: 11, given: 10 });
         let mut memory = [0_u8; 64];
         let mut arena = Arena::new(&mut memory, 0).unwrap();
         assert!(arena.slice::<u64>(usize::MAX).is_err());

@@ -22,11 +22,7 @@ impl Monitor {
     /// A monitor under which each call does at most `limit` rays and distance queries, and then returns the
     /// best that it has so far and says that it is partial.
     pub const fn with_work_limit(limit: u64) -> Self {
-        Self {
-            progress: AtomicU32::new(0),
-            cancelled: AtomicBool::new(false),
-            work_limit: limit,
-        }
+        Self { progress: AtomicU32::new(0), cancelled: AtomicBool::new(false), work_limit: limit }
     }
 
     /// How far the current call is, from 0 to 1.
@@ -80,17 +76,12 @@ pub(crate) struct Meter<'a> {
 impl<'a> Meter<'a> {
     pub(crate) fn new(monitor: &'a Monitor) -> Self {
         monitor.progress.store(0, Ordering::Relaxed);
-        Self {
-            monitor,
-            work: Work::default(),
-        }
+        Self { monitor, work: Work::default() }
     }
 
     /// Shows progress, a fraction from 0 to 1.
     pub(crate) fn progress(&self, fraction: f32) {
-        self.monitor
-            .progress
-            .store((fraction * PROGRESS_STEPS) as u32, Ordering::Relaxed);
+        self.monitor.progress.store((fraction * PROGRESS_STEPS) as u32, Ordering::Relaxed);
     }
 
     /// Books `count` rays before they are cast.

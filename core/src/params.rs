@@ -4,11 +4,7 @@ use crate::geometry::{Point, Vector};
 
 /// What the object's centre of mass is taken to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum CentreOfMass {
     /// The mean of the surface samples: `h_c` of eq. (3).
     SampleMean,
@@ -118,42 +114,17 @@ impl Params {
             ("samples", self.samples as f32, 100.0, MAX_SAMPLES as f32),
             ("object_contact_cosine", self.object_contact_cosine, 0.0, 1.0),
             ("cluster_bandwidth", self.cluster_bandwidth, 0.001, 1.0),
-            (
-                "min_cluster_points",
-                self.min_cluster_points as f32,
-                0.0,
-                MAX_SAMPLES as f32,
-            ),
+            ("min_cluster_points", self.min_cluster_points as f32, 0.0, MAX_SAMPLES as f32),
             ("free_space_steps", self.free_space_steps as f32, 2.0, 1000.0),
             ("min_free_space_radius", self.min_free_space_radius, 0.0, 1.0),
-            (
-                "object_directions",
-                self.object_directions as f32,
-                1.0,
-                MAX_DIRECTIONS as f32,
-            ),
-            (
-                "rays_per_direction",
-                self.rays_per_direction as f32,
-                3.0,
-                MAX_DIRECTIONS as f32,
-            ),
+            ("object_directions", self.object_directions as f32, 1.0, MAX_DIRECTIONS as f32),
+            ("rays_per_direction", self.rays_per_direction as f32, 3.0, MAX_DIRECTIONS as f32),
             ("min_encircled_above", self.min_encircled_above, 0.0, 1.0),
             ("min_encircled_below", self.min_encircled_below, 0.0, 1.0),
             ("similar_radius", self.similar_radius, 0.0, 1.0),
             ("similar_direction", self.similar_direction, 0.0, 1.0),
-            (
-                "supporter_contact_cosine",
-                self.supporter_contact_cosine,
-                0.0,
-                1.0,
-            ),
-            (
-                "supporter_directions",
-                self.supporter_directions as f32,
-                1.0,
-                MAX_DIRECTIONS as f32,
-            ),
+            ("supporter_contact_cosine", self.supporter_contact_cosine, 0.0, 1.0),
+            ("supporter_directions", self.supporter_directions as f32, 1.0, MAX_DIRECTIONS as f32),
             ("slice_half_thickness", self.slice_half_thickness, 1e-5, 1.0),
             ("slice_link_distance", self.slice_link_distance, 1e-5, 1.0),
             ("radius_ratio", self.radius_ratio, 0.0, 1.0),
@@ -164,19 +135,12 @@ impl Params {
         ];
         for (name, value, min, max) in ranges {
             if !(min..=max).contains(&value) {
-                return Err(ParamsError::OutOfRange {
-                    name,
-                    value,
-                    min,
-                    max,
-                });
+                return Err(ParamsError::OutOfRange { name, value, min, max });
             }
         }
         let gravity = Vector::from(self.gravity);
         if !(gravity.norm_squared().is_finite() && gravity.norm() > 1e-6) {
-            return Err(ParamsError::Gravity {
-                gravity: self.gravity,
-            });
+            return Err(ParamsError::Gravity { gravity: self.gravity });
         }
         if let CentreOfMass::Given(point) = self.centre_of_mass
             && !point.iter().all(|x| x.abs() <= crate::geometry::MAX_COORDINATE)
@@ -204,11 +168,7 @@ impl Params {
 /// Ours: the paper's method on the true centre of mass, without poses that run the supporter through the object.
 impl Default for Params {
     fn default() -> Self {
-        Self {
-            centre_of_mass: CentreOfMass::Volume,
-            max_collision: 0.01,
-            ..Self::paper()
-        }
+        Self { centre_of_mass: CentreOfMass::Volume, max_collision: 0.01, ..Self::paper() }
     }
 }
 
@@ -246,12 +206,7 @@ pub enum ParamsError {
 impl core::fmt::Display for ParamsError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::OutOfRange {
-                name,
-                value,
-                min,
-                max,
-            } => {
+            Self::OutOfRange { name, value, min, max } => {
                 write!(f, "{name} = {value} is outside its range, {min} to {max}")
             }
             Self::Gravity { gravity } => write!(f, "gravity = {gravity:?} gives no direction"),
@@ -274,37 +229,16 @@ mod tests {
 
     #[test]
     fn a_value_out_of_range_is_named() {
-        let params = Params {
-            radius_ratio: 1.5,
-            ..Params::paper()
-        };
+        let params = Params { radius_ratio: 1.5, ..Params::paper() };
         let message = params.validate().unwrap_err().to_string();
         assert_eq!(message, "radius_ratio = 1.5 is outside its range, 0 to 1");
         for params in [
-            Params {
-                similar_radius: f32::NAN,
-                ..Params::paper()
-            },
-            Params {
-                samples: 0,
-                ..Params::paper()
-            },
-            Params {
-                samples: usize::MAX,
-                ..Params::paper()
-            },
-            Params {
-                gravity: [0.0; 3],
-                ..Params::paper()
-            },
-            Params {
-                gravity: [f32::MAX; 3],
-                ..Params::paper()
-            },
-            Params {
-                centre_of_mass: CentreOfMass::Given([0.0, f32::NAN, 0.0]),
-                ..Params::paper()
-            },
+            Params { similar_radius: f32::NAN, ..Params::paper() },
+            Params { samples: 0, ..Params::paper() },
+            Params { samples: usize::MAX, ..Params::paper() },
+            Params { gravity: [0.0; 3], ..Params::paper() },
+            Params { gravity: [f32::MAX; 3], ..Params::paper() },
+            Params { centre_of_mass: CentreOfMass::Given([0.0, f32::NAN, 0.0]), ..Params::paper() },
         ] {
             assert!(params.validate().is_err(), "{params:?}");
         }

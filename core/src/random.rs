@@ -11,9 +11,7 @@ const INCREMENT: u64 = 1_442_695_040_888_963_407;
 
 impl Random {
     pub(crate) fn new(seed: u64) -> Self {
-        let mut random = Self {
-            state: seed.wrapping_add(INCREMENT),
-        };
+        let mut random = Self { state: seed.wrapping_add(INCREMENT) };
         random.next_u32();
         random
     }
@@ -44,10 +42,7 @@ mod tests {
             buckets[(x * 16.0) as usize] += 1;
         }
         // Chi-squared with 15 degrees of freedom: 37.7 is the 99.9 % quantile.
-        let chi: f64 = buckets
-            .iter()
-            .map(|&b| (f64::from(b) - 10_000.0).powi(2) / 10_000.0)
-            .sum();
+        let chi: f64 = buckets.iter().map(|&b| (f64::from(b) - 10_000.0).powi(2) / 10_000.0).sum();
         assert!(chi < 37.7, "chi-squared {chi}");
         assert_ne!(Random::new(1).next_u32(), Random::new(2).next_u32());
     }
@@ -57,10 +52,7 @@ mod tests {
         // First outputs of the reference pcg32 demo, seeded with 42 on sequence 54; the sequence selects the
         // increment, so this pins the step and the output function on that increment.
         let increment = (54_u64 << 1) | 1;
-        let mut state = increment
-            .wrapping_add(42)
-            .wrapping_mul(MULTIPLIER)
-            .wrapping_add(increment);
+        let mut state = increment.wrapping_add(42).wrapping_mul(MULTIPLIER).wrapping_add(increment);
         let mut out = Vec::new();
         for _ in 0..3 {
             out.push(Random { state }.next_u32());

@@ -16,27 +16,26 @@ impl Shape {
 
     pub(crate) fn map(&self, f: impl Fn(Point) -> Point) -> Self {
         let vertices = self.vertices.iter().map(|v| f((*v).into()).into()).collect();
-        Self {
-            vertices,
-            triangles: self.triangles.clone(),
-        }
+        Self { vertices, triangles: self.triangles.clone() }
+    }
+
+    pub(crate) fn inside_out(&self) -> Self {
+        let triangles = self.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        Self { vertices: self.vertices.clone(), triangles }
     }
 
     pub(crate) fn append(&mut self, other: &Self, offset: Vector) {
         let base = self.vertices.len() as u32;
         self.vertices.extend(other.map(|p| p + offset).vertices);
-        self.triangles
-            .extend(other.triangles.iter().map(|t| t.map(|v| v + base)));
+        self.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + base)));
     }
 }
 
 /// A closed band of quads between `rows` rings of `columns` vertices; rings close on themselves, and the band on
 /// its first ring if `wrap`.
 fn band(rows: u32, columns: u32, wrap: bool, vertex: impl Fn(u32, u32) -> [f32; 3]) -> Shape {
-    let vertices = (0..rows)
-        .flat_map(|i| (0..columns).map(move |j| (i, j)))
-        .map(|(i, j)| vertex(i, j))
-        .collect();
+    let vertices =
+        (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))).map(|(i, j)| vertex(i, j)).collect();
     let triangles = (0..if wrap { rows } else { rows - 1 })
         .flat_map(|i| (0..columns).map(move |j| (i, j)))
         .flat_map(|(i, j)| {
@@ -74,12 +73,37 @@ pub(crate) fn ball(radius: f32, rows: u32, columns: u32) -> Shape {
 /// A flat square in the x-y plane, from the origin, `n` by `n` quads.
 pub(crate) fn grid(edge: f32, n: u32) -> Shape {
     let at = |i: u32| edge * i as f32 / n as f32;
-    let vertices = (0..=n)
-        .flat_map(|i| (0..=n).map(move |j| [at(i), at(j), 0.0]))
-        .collect();
+    let vertices = (0..=n).flat_map(|i| (0..=n).map(move |j| [at(i), at(j), 0.0])).collect();
     let triangles = (0..n)
         .flat_map(|i| (0..n).map(move |j| (i * (n + 1) + j, (i + 1) * (n + 1) + j)))
         .flat_map(|(a, b)| [[a, b, b + 1], [a, b + 1, a + 1]])
         .collect();
     Shape { vertices, triangles }
+}
+
+/// Points on a cylinder between `from` and `to` and on its two caps, with normals, about `spacing` apart. They
+/// wind around it by the golden angle, so that no two distances are the same.
+pub(crate) fn peg(from: Point, to: Point, radius: f32, spacing: f32) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
+    let golden_angle = core::f32::consts::PI * (3.0 - 5_f32.sqrt());
+    let axis = (to - from).normalize();
+    let side = crate::geometry::any_perpendicular(axis);
+    let (mut points, mut normals) = (Vec::new(), Vec::new());
+    let mut add = |point: Point, normal: Vector| {
+        points.push(point.into());
+        normals.push(normal.into());
+    };
+    let area = core::f32::consts::TAU * radius * (to - from).norm();
+    let count = (area / spacing.powi(2)) as u32;
+    for i in 0..count {
+        let normal = crate::geometry::rotate_about(axis, golden_angle * i as f32, side);
+        add(from + (to - from) * ((i as f32 + 0.5) / count as f32) + normal * radius, normal);
+    }
+    let count = (core::f32::consts::PI * (radius / spacing).powi(2)) as u32;
+    for i in 0..count {
+        let out = crate::geometry::rotate_about(axis, golden_angle * i as f32, side);
+        let offset = out * (radius * ((i as f32 + 0.5) / count as f32).sqrt());
+        add(from + offset, -axis);
+        add(to + offset, axis);
+    }
+    (points, normals)
 }

@@ -20,23 +20,15 @@ impl Aabb {
 
     /// The smallest box around `points`.
     pub(crate) fn of<'a>(points: impl IntoIterator<Item = &'a Point>) -> Self {
-        points
-            .into_iter()
-            .fold(Self::EMPTY, |aabb, point| aabb.grow(point))
+        points.into_iter().fold(Self::EMPTY, |aabb, point| aabb.grow(point))
     }
 
     pub(crate) fn grow(&self, point: &Point) -> Self {
-        Self {
-            min: self.min.inf(point),
-            max: self.max.sup(point),
-        }
+        Self { min: self.min.inf(point), max: self.max.sup(point) }
     }
 
     pub(crate) fn union(&self, other: &Self) -> Self {
-        Self {
-            min: self.min.inf(&other.min),
-            max: self.max.sup(&other.max),
-        }
+        Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }
     }
 
     /// Edge lengths, in metres.

@@ -19,10 +19,7 @@ pub(crate) struct Node {
 
 impl Node {
     pub(crate) fn aabb(&self) -> Aabb {
-        Aabb {
-            min: self.min.into(),
-            max: self.max.into(),
-        }
+        Aabb { min: self.min.into(), max: self.max.into() }
     }
 
     /// The items of a leaf, as positions in the tree's order; `None` for an inner node.
@@ -76,15 +73,9 @@ impl<'m> Bvh<'m> {
         let mut next = Some((0, 0, order.len(), 0));
         while let Some((node, first, count, depth)) = next {
             let items = &mut order[first..first + count];
-            let aabb = items
-                .iter()
-                .fold(Aabb::EMPTY, |aabb, &item| aabb.union(&bounds(item)));
-            nodes[node] = Node {
-                min: aabb.min.into(),
-                max: aabb.max.into(),
-                first: first as u32,
-                count: count as u32,
-            };
+            let aabb = items.iter().fold(Aabb::EMPTY, |aabb, &item| aabb.union(&bounds(item)));
+            nodes[node] =
+                Node { min: aabb.min.into(), max: aabb.max.into(), first: first as u32, count: count as u32 };
             if count > LEAF_ITEMS {
                 let middle = split(items, &mut centres[first..first + count], &bounds, depth);
                 (nodes[node].first, nodes[node].count) = (used as u32, 0);
@@ -96,9 +87,7 @@ impl<'m> Bvh<'m> {
                 next = pending.pop();
             }
         }
-        Self {
-            nodes: &nodes[..used],
-        }
+        Self { nodes: &nodes[..used] }
     }
 
     pub(crate) fn nodes(&self) -> &'m [Node] {
@@ -143,11 +132,7 @@ impl<'m> Bvh<'m> {
                 next = stack.pop();
             } else {
                 let [left, right] = node.children().map(|child| (child, distance(child)));
-                let (near, far) = if right.1 < left.1 {
-                    (right, left)
-                } else {
-                    (left, right)
-                };
+                let (near, far) = if right.1 < left.1 { (right, left) } else { (left, right) };
                 let _ = stack.push(far);
                 next = Some(near);
             }
@@ -165,11 +150,7 @@ impl<'m> Bvh<'m> {
     ) {
         let mut limit = limit;
         let inverse = inverse(direction);
-        let entry = |node: u32, limit| {
-            self.nodes[node as usize]
-                .aabb()
-                .ray_entry(origin, &inverse, limit)
-        };
+        let entry = |node: u32, limit| self.nodes[node as usize].aabb().ray_entry(origin, &inverse, limit);
         let mut stack = heapless::Vec::<(u32, f32), { MAX_DEPTH + 2 }>::new();
         let mut next = entry(0, limit).map(|at| (0, at));
         while let Some((node, at)) = next {
@@ -186,16 +167,10 @@ impl<'m> Bvh<'m> {
                 next = stack.pop();
                 continue;
             }
-            let [left, right] = node
-                .children()
-                .map(|child| entry(child, limit).map(|at| (child, at)));
+            let [left, right] = node.children().map(|child| entry(child, limit).map(|at| (child, at)));
             next = match (left, right) {
                 (Some(left), Some(right)) => {
-                    let (near, far) = if right.1 < left.1 {
-                        (right, left)
-                    } else {
-                        (left, right)
-                    };
+                    let (near, far) = if right.1 < left.1 { (right, left) } else { (left, right) };
                     let _ = stack.push(far);
                     Some(near)
                 }
@@ -301,11 +276,7 @@ fn halve(items: &mut [u32], centres: &mut [[f32; 3]], axis: usize) -> usize {
         let (value, item) = (centres[to - 1][axis], items[to - 1]);
         let mut store = from;
         for i in from..to - 1 {
-            if centres[i][axis]
-                .total_cmp(&value)
-                .then(items[i].cmp(&item))
-                .is_lt()
-            {
+            if centres[i][axis].total_cmp(&value).then(items[i].cmp(&item)).is_lt() {
                 items.swap(i, store);
                 centres.swap(i, store);
                 store += 1;
@@ -338,24 +309,14 @@ mod tests {
 
     fn random_points(count: usize, seed: u64) -> Vec<Point> {
         let mut random = Random::new(seed);
-        (0..count)
-            .map(|_| Point::from([(); 3].map(|()| random.next_f32())))
-            .collect()
+        (0..count).map(|_| Point::from([(); 3].map(|()| random.next_f32()))).collect()
     }
 
     #[test]
     fn every_item_is_in_one_leaf_and_inside_its_ancestors() {
-        let line: Vec<Point> = (0..500)
-            .map(|i| Point::new(1.5_f32.powi(i % 60), 0.0, 0.0))
-            .collect();
+        let line: Vec<Point> = (0..500).map(|i| Point::new(1.5_f32.powi(i % 60), 0.0, 0.0)).collect();
         let same = vec![Point::new(1.0, 2.0, 3.0); 999];
-        for points in [
-            random_points(1, 1),
-            random_points(5, 2),
-            random_points(2000, 3),
-            line,
-            same,
-        ] {
+        for points in [random_points(1, 1), random_points(5, 2), random_points(2000, 3), line, same] {
             with_tree(&points, |bvh, order| {
                 let mut seen = vec![0; points.len()];
                 bvh.descend(|_, node| {

@@ -56,10 +56,7 @@ impl core::fmt::Display for CloudError {
         match self {
             Self::Empty => write!(f, "the point cloud has no points"),
             Self::TooLarge { count, limit } => {
-                write!(
-                    f,
-                    "the point cloud has {count} points and at most {limit} are possible: thin it out"
-                )
+                write!(f, "the point cloud has {count} points and at most {limit} are possible: thin it out")
             }
             Self::Coordinate { point, position } => write!(
                 f,
@@ -70,10 +67,7 @@ impl core::fmt::Display for CloudError {
                 "the normal of point {point} is {normal:?}: give numbers, or zeros where it is not known"
             ),
             Self::NormalCount { points, normals } => {
-                write!(
-                    f,
-                    "there are {points} points and {normals} normals: give one for each point, or none"
-                )
+                write!(f, "there are {points} points and {normals} normals: give one for each point, or none")
             }
             Self::Viewpoint { position } => {
                 write!(f, "the viewpoint {position:?} is not a point in metres")
@@ -92,36 +86,20 @@ impl<'a> Cloud<'a> {
             return Err(CloudError::Empty);
         }
         if points.len() > MAX_COUNT {
-            return Err(CloudError::TooLarge {
-                count: points.len(),
-                limit: MAX_COUNT,
-            });
+            return Err(CloudError::TooLarge { count: points.len(), limit: MAX_COUNT });
         }
         if let Some(point) = points.iter().position(|p| !is_usable(p)) {
-            return Err(CloudError::Coordinate {
-                point,
-                position: points[point],
-            });
+            return Err(CloudError::Coordinate { point, position: points[point] });
         }
         if let Some(normals) = normals {
             if normals.len() != points.len() {
-                return Err(CloudError::NormalCount {
-                    points: points.len(),
-                    normals: normals.len(),
-                });
+                return Err(CloudError::NormalCount { points: points.len(), normals: normals.len() });
             }
             if let Some(point) = normals.iter().position(|n| !is_usable(n)) {
-                return Err(CloudError::Normal {
-                    point,
-                    normal: normals[point],
-                });
+                return Err(CloudError::Normal { point, normal: normals[point] });
             }
         }
-        Ok(Self {
-            points: bytemuck::cast_slice(points),
-            normals,
-            viewpoint: None,
-        })
+        Ok(Self { points: bytemuck::cast_slice(points), normals, viewpoint: None })
     }
 
     /// Says from where the points were seen (metres, in the cloud's frame): estimated normals face it.
@@ -129,10 +107,7 @@ impl<'a> Cloud<'a> {
         if !is_usable(&viewpoint) {
             return Err(CloudError::Viewpoint { position: viewpoint });
         }
-        Ok(Self {
-            viewpoint: Some(viewpoint.into()),
-            ..self
-        })
+        Ok(Self { viewpoint: Some(viewpoint.into()), ..self })
     }
 
     /// The points.
@@ -161,13 +136,7 @@ mod tests {
         assert_eq!(Cloud::new(&[], None).unwrap_err(), CloudError::Empty);
         let normals = [[0.0, 0.0, 1.0]];
         let error = Cloud::new(&points, Some(&normals)).unwrap_err();
-        assert_eq!(
-            error,
-            CloudError::NormalCount {
-                points: 2,
-                normals: 1
-            }
-        );
+        assert_eq!(error, CloudError::NormalCount { points: 2, normals: 1 });
         let error = Cloud::new(&[[0.0; 3], [0.0, f32::NAN, 0.0]], None).unwrap_err();
         assert!(matches!(error, CloudError::Coordinate { point: 1, .. }));
         let error = Cloud::new(&points, Some(&[[0.0; 3], [f32::INFINITY; 3]])).unwrap_err();

@@ -47,11 +47,8 @@ mod tests {
                 random.next_f32() * 6.0,
             );
             let least = Vector::z();
-            let values = Vector::new(
-                1.0 + random.next_f32(),
-                1.0 + random.next_f32(),
-                random.next_f32() * 0.9,
-            );
+            let values =
+                Vector::new(1.0 + random.next_f32(), 1.0 + random.next_f32(), random.next_f32() * 0.9);
             let m = turn.matrix() * Matrix3::from_diagonal(&(values * scale)) * turn.matrix().transpose();
             let found = least_eigenvector((m + m.transpose()) * 0.5);
             assert!(found.dot(&(turn * least)).abs() > 0.9999, "{case}: {found}");

@@ -41,11 +41,7 @@ pub fn exit_distance(points: &[Point], origin: Point, direction: Vector) -> f32 
         return 0.0;
     }
     let (_, leaves) = view.walk(points, portal, f64::INFINITY);
-    if leaves > AGREED {
-        leaves as f32 * view.extent
-    } else {
-        0.0
-    }
+    if leaves > AGREED { leaves as f32 * view.extent } else { 0.0 }
 }
 
 /// A corner of a portal as the ray sees it: two coordinates across it, relative to the nudged ray, and one along it, in
@@ -80,18 +76,10 @@ impl View {
         }
         // Any axis across the ray will do to find the point farthest from it.
         let along = direction;
-        let helper = if along.x.abs() < 0.6 * length {
-            Vector::x()
-        } else {
-            Vector::y()
-        };
+        let helper = if along.x.abs() < 0.6 * length { Vector::x() } else { Vector::y() };
         let across = unit(along.cross(&helper))?;
-        let mut view = Self {
-            origin,
-            axes: [across, along.cross(&across), along],
-            extent,
-            scale: 1.0 / extent,
-        };
+        let mut view =
+            Self { origin, axes: [across, along.cross(&across), along], extent, scale: 1.0 / extent };
         let mut farthest = [0.0, 0.0];
         let mut most = 0.0;
         for &p in points {
@@ -110,10 +98,7 @@ impl View {
 
     fn reversed(&self) -> Self {
         let [a, b, c] = self.axes;
-        Self {
-            axes: [a, b, -c],
-            ..*self
-        }
+        Self { axes: [a, b, -c], ..*self }
     }
 
     /// Where a point lies across the ray, in extents.
@@ -190,10 +175,7 @@ impl View {
             let v = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
             let area = cross(u, v);
             // The upward normal of the portal's plane, its third coordinate 1.
-            let slope = [
-                (u[1] * v[2] - u[2] * v[1]) / area,
-                (u[2] * v[0] - u[0] * v[2]) / area,
-            ];
+            let slope = [(u[1] * v[2] - u[2] * v[1]) / area, (u[2] * v[0] - u[0] * v[2]) / area];
             let height = a[2] + slope[0] * a[0] + slope[1] * a[1];
             if !(area > 0.0 && height.is_finite()) {
                 break;

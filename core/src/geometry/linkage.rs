@@ -15,7 +15,8 @@ pub(crate) fn linked_cluster(points: &mut [Point], link: f32, reach: f32) -> Opt
         points.swap(done, members - 1);
         let from = points[done];
         done += 1;
-        for i in members..points.len() {
+        let others = members..points.len();
+        for i in others {
             if (points[i] - from).norm_squared() < link * link {
                 if (points[i] - first).norm_squared() > reach * reach {
                     return None;
@@ -51,32 +52,21 @@ mod tests {
     fn linked_cluster_agrees_with_brute_force() {
         for seed in 0..20 {
             let mut random = Random::new(seed);
-            let points: Vec<Point> = (0..200)
-                .map(|_| Point::new(random.next_f32(), random.next_f32(), 0.0))
-                .collect();
+            let points: Vec<Point> =
+                (0..200).map(|_| Point::new(random.next_f32(), random.next_f32(), 0.0)).collect();
             let labels = brute_force_linkage(&points, 0.06);
             let mut moved = points.clone();
             let count = linked_cluster(&mut moved, 0.06, f32::INFINITY).unwrap();
             assert_eq!(count, labels.iter().filter(|&&l| l == labels[0]).count());
             let key = |p: &Point| (p.x.to_bits(), p.y.to_bits());
             let mut found: Vec<_> = moved[..count].iter().map(key).collect();
-            let mut expected: Vec<_> = points
-                .iter()
-                .zip(&labels)
-                .filter(|(_, l)| **l == labels[0])
-                .map(|(p, _)| key(p))
-                .collect();
+            let mut expected: Vec<_> =
+                points.iter().zip(&labels).filter(|(_, l)| **l == labels[0]).map(|(p, _)| key(p)).collect();
             found.sort_unstable();
             expected.sort_unstable();
             assert_eq!(found, expected);
-            let extent = moved[..count]
-                .iter()
-                .map(|p| (p - points[0]).norm())
-                .fold(0.0, f32::max);
-            assert_eq!(
-                linked_cluster(&mut points.clone(), 0.06, extent * 1.001),
-                Some(count)
-            );
+            let extent = moved[..count].iter().map(|p| (p - points[0]).norm()).fold(0.0, f32::max);
+            assert_eq!(linked_cluster(&mut points.clone(), 0.06, extent * 1.001), Some(count));
             if extent > 0.0 {
                 assert_eq!(linked_cluster(&mut points.clone(), 0.06, extent * 0.999), None);
             }

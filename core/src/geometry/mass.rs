@@ -72,9 +72,7 @@ fn is_closed(mesh: &Mesh, scratch: &mut Arena) -> Result<bool, OutOfMemory> {
     let position = |index: u32| vertices[index as usize].coords.add_scalar(0.0);
     let compare = |a: &u32, b: &u32| {
         let (a, b) = (position(*a), position(*b));
-        (0..3).fold(core::cmp::Ordering::Equal, |order, i| {
-            order.then(a[i].total_cmp(&b[i]))
-        })
+        (0..3).fold(core::cmp::Ordering::Equal, |order, i| order.then(a[i].total_cmp(&b[i])))
     };
     order.sort_unstable_by(|a, b| compare(a, b).then(a.cmp(b)));
     let mut representative = order.first().copied().unwrap_or(0);
@@ -138,10 +136,7 @@ mod tests {
         assert_eq!(mass.volume_centroid, mass_of(&CORNERS, &FACES).volume_centroid);
 
         let open = mass_of(&CORNERS, &FACES[..3]);
-        assert_eq!(
-            (open.is_closed, open.volume, open.volume_centroid),
-            (false, None, None)
-        );
+        assert_eq!((open.is_closed, open.volume, open.volume_centroid), (false, None, None));
         let one_flipped = [FACES[0], FACES[1], FACES[2], flipped[3]];
         assert!(!mass_of(&CORNERS, &one_flipped).is_closed);
         // A sheet with two sides is closed but holds nothing.

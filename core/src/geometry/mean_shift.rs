@@ -43,14 +43,8 @@ pub(crate) fn cluster(
     let mut count = 0;
     for &seed in seeds {
         let seed = tree.points()[seed as usize];
-        if modes[..count]
-            .iter()
-            .all(|mode| apart(&mode.position.into(), &seed))
-        {
-            modes[count] = Mode {
-                position: seed.into(),
-                support: 0,
-            };
+        if modes[..count].iter().all(|mode| apart(&mode.position.into(), &seed)) {
+            modes[count] = Mode { position: seed.into(), support: 0 };
             count += 1;
         }
     }
@@ -65,10 +59,7 @@ pub(crate) fn cluster(
     let mut kept = 0;
     for i in 0..count {
         let position = modes[i].position.into();
-        if modes[..kept]
-            .iter()
-            .all(|mode| apart(&mode.position.into(), &position))
-        {
+        if modes[..kept].iter().all(|mode| apart(&mode.position.into(), &position)) {
             modes[kept] = modes[i];
             kept += 1;
         }
@@ -98,18 +89,12 @@ fn shift(tree: &PointTree, mut position: Point, bandwidth: f32) -> Mode {
             break;
         }
     }
-    Mode {
-        position: position.into(),
-        support,
-    }
+    Mode { position: position.into(), support }
 }
 
 /// The position of the least distance, the first of equal ones.
 fn nearest_of(distances: impl Iterator<Item = f32>) -> u32 {
-    distances
-        .zip(0..)
-        .min_by(|a, b| a.0.total_cmp(&b.0))
-        .map_or(0, |(_, index)| index)
+    distances.zip(0..).min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0, |(_, index)| index)
 }
 
 #[cfg(test)]
@@ -147,11 +132,7 @@ mod tests {
 
     #[test]
     fn mean_shift_finds_the_blobs_in_any_frame() {
-        let centres = [
-            Point::new(0.0, 0.0, 0.0),
-            Point::new(1.0, 0.2, 0.0),
-            Point::new(0.3, 0.9, 0.5),
-        ];
+        let centres = [Point::new(0.0, 0.0, 0.0), Point::new(1.0, 0.2, 0.0), Point::new(0.3, 0.9, 0.5)];
         let points = gaussian_blobs(&centres, 150, 0.08, 3);
         let (count, labels) = clusters_of(&points, 0.35);
         assert_eq!(count, 3);
@@ -159,19 +140,14 @@ mod tests {
             assert!(blob.iter().all(|&label| label == blob[0]));
         }
         let turn = nalgebra::Rotation3::from_euler_angles(0.3, 1.1, -2.0);
-        let turned: Vec<Point> = points
-            .iter()
-            .map(|p| turn * p + Vector::new(3.0, -2.0, 1.0))
-            .collect();
+        let turned: Vec<Point> = points.iter().map(|p| turn * p + Vector::new(3.0, -2.0, 1.0)).collect();
         assert_eq!(clusters_of(&turned, 0.35), (count, labels));
     }
 
     #[test]
     fn modes_are_means_of_what_is_around_them() {
         let mut random = Random::new(9);
-        let points: Vec<Point> = (0..400)
-            .map(|_| Point::from([(); 3].map(|()| random.next_f32())))
-            .collect();
+        let points: Vec<Point> = (0..400).map(|_| Point::from([(); 3].map(|()| random.next_f32()))).collect();
         let needed = model_bytes(PointTree::bytes(400) + PointTree::scratch_bytes(400));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
@@ -189,9 +165,6 @@ mod tests {
     #[test]
     fn one_point_is_one_cluster() {
         assert_eq!(clusters_of(&[Point::new(1.0, 2.0, 3.0)], 0.1), (1, vec![0]));
-        assert_eq!(
-            clusters_of(&[Point::new(1.0, 2.0, 3.0); 50], 0.1),
-            (1, vec![0; 50])
-        );
+        assert_eq!(clusters_of(&[Point::new(1.0, 2.0, 3.0); 50], 0.1), (1, vec![0; 50]));
     }
 }

@@ -61,15 +61,8 @@ impl core::fmt::Display for MeshError {
                 f,
                 "vertex {vertex} is at {position:?}: every coordinate must be a number of metres within ±{MAX_COORDINATE}"
             ),
-            Self::Index {
-                triangle,
-                vertex,
-                vertices,
-            } => {
-                write!(
-                    f,
-                    "triangle {triangle} names vertex {vertex}, but there are {vertices} vertices"
-                )
+            Self::Index { triangle, vertex, vertices } => {
+                write!(f, "triangle {triangle} names vertex {vertex}, but there are {vertices} vertices")
             }
             Self::AllDegenerate { triangles } => {
                 write!(
@@ -94,36 +87,21 @@ impl<'a> Mesh<'a> {
         }
         let count = vertices.len().max(triangles.len());
         if count > MAX_COUNT {
-            return Err(MeshError::TooLarge {
-                count,
-                limit: MAX_COUNT,
-            });
+            return Err(MeshError::TooLarge { count, limit: MAX_COUNT });
         }
         for (vertex, position) in vertices.iter().enumerate() {
             if !is_usable(position) {
-                return Err(MeshError::Coordinate {
-                    vertex,
-                    position: *position,
-                });
+                return Err(MeshError::Coordinate { vertex, position: *position });
             }
         }
         for (triangle, corners) in triangles.iter().enumerate() {
             if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= vertices.len()) {
-                return Err(MeshError::Index {
-                    triangle,
-                    vertex,
-                    vertices: vertices.len(),
-                });
+                return Err(MeshError::Index { triangle, vertex, vertices: vertices.len() });
             }
         }
-        let mesh = Self {
-            vertices: bytemuck::cast_slice(vertices),
-            triangles,
-        };
+        let mesh = Self { vertices: bytemuck::cast_slice(vertices), triangles };
         if mesh.solid_triangles().next().is_none() {
-            return Err(MeshError::AllDegenerate {
-                triangles: triangles.len(),
-            });
+            return Err(MeshError::AllDegenerate { triangles: triangles.len() });
         }
         Ok(mesh)
     }
@@ -152,12 +130,7 @@ impl<'a> Mesh<'a> {
 
     /// The box around all triangles.
     pub fn aabb(&self) -> Aabb {
-        Aabb::of(
-            self.triangles
-                .iter()
-                .flatten()
-                .map(|&v| &self.vertices[v as usize]),
-        )
+        Aabb::of(self.triangles.iter().flatten().map(|&v| &self.vertices[v as usize]))
     }
 }
 
@@ -187,24 +160,14 @@ mod tests {
         assert_eq!(check(&[], &[]), MeshError::Empty);
         assert_eq!(
             check(&SQUARE, &[[0, 1, 2], [0, 1, 4]]),
-            MeshError::Index {
-                triangle: 1,
-                vertex: 4,
-                vertices: 4
-            }
+            MeshError::Index { triangle: 1, vertex: 4, vertices: 4 }
         );
-        assert_eq!(
-            check(&SQUARE, &[[0, 1, 1], [2, 2, 2]]),
-            MeshError::AllDegenerate { triangles: 2 }
-        );
+        assert_eq!(check(&SQUARE, &[[0, 1, 1], [2, 2, 2]]), MeshError::AllDegenerate { triangles: 2 });
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e9] {
             let mut vertices = SQUARE;
             vertices[2][1] = bad;
             assert!(
-                matches!(
-                    check(&vertices, &[[0, 1, 3]]),
-                    MeshError::Coordinate { vertex: 2, .. }
-                ),
+                matches!(check(&vertices, &[[0, 1, 3]]), MeshError::Coordinate { vertex: 2, .. }),
                 "{bad}"
             );
         }

@@ -24,19 +24,18 @@ pub struct Neighbour {
 
 impl Neighbour {
     fn is_before(&self, other: &Self) -> bool {
-        self.distance_squared
-            .total_cmp(&other.distance_squared)
-            .then(self.index.cmp(&other.index))
-            .is_lt()
+        self.distance_squared.total_cmp(&other.distance_squared).then(self.index.cmp(&other.index)).is_lt()
     }
 }
 
 impl<'m> PointTree<'m> {
     /// Bytes of a tree over `points`.
     pub(crate) const fn bytes(points: usize) -> usize {
-        array_bytes::<u32>(points)
-            .saturating_add(array_bytes::<Point>(points))
-            .saturating_add(array_bytes::<Node>(Bvh::max_nodes(points)))
+        array_bytes::<u32>(points).saturating_add(array_bytes::<Point>(points)).saturating_add(array_bytes::<
+            Node,
+        >(
+            Bvh::max_nodes(points),
+        ))
     }
 
     /// Bytes of working memory for building it.
@@ -58,11 +57,7 @@ impl<'m> PointTree<'m> {
         for (slot, &index) in sorted.iter_mut().zip(order.iter()) {
             *slot = points[index as usize];
         }
-        Ok(Self {
-            points: sorted,
-            order,
-            bvh,
-        })
+        Ok(Self { points: sorted, order, bvh })
     }
 
     /// The points, in tree order.
@@ -86,10 +81,7 @@ impl<'m> PointTree<'m> {
 
     /// The point closest to `query`; of equally close ones the first.
     pub fn nearest(&self, query: &Point) -> Neighbour {
-        let mut nearest = [Neighbour {
-            index: 0,
-            distance_squared: f32::INFINITY,
-        }];
+        let mut nearest = [Neighbour { index: 0, distance_squared: f32::INFINITY }];
         self.k_nearest(query, &mut nearest);
         nearest[0]
     }
@@ -101,10 +93,7 @@ impl<'m> PointTree<'m> {
             self.bvh.visit_near(query, f32::INFINITY, |items, mut limit| {
                 for index in items {
                     let distance_squared = (self.points[index] - query).norm_squared();
-                    let candidate = Neighbour {
-                        index: index as u32,
-                        distance_squared,
-                    };
+                    let candidate = Neighbour { index: index as u32, distance_squared };
                     if count == found.len() && !candidate.is_before(&found[count - 1]) {
                         continue;
                     }
@@ -131,10 +120,7 @@ impl<'m> PointTree<'m> {
             for index in items {
                 let distance_squared = (self.points[index] - query).norm_squared();
                 if distance_squared <= limit {
-                    visit(Neighbour {
-                        index: index as u32,
-                        distance_squared,
-                    });
+                    visit(Neighbour { index: index as u32, distance_squared });
                 }
             }
             limit
@@ -156,21 +142,14 @@ mod tests {
         let mut points: Vec<Point> = (0..700).map(|_| uniform(1.0)).collect();
         points.extend((0..200).map(|_| uniform(0.01)));
         points.extend_from_within(..100);
-        let queries: Vec<Point> = (0..100)
-            .map(|_| uniform(1.2))
-            .chain(points[..50].iter().copied())
-            .collect();
+        let queries: Vec<Point> =
+            (0..100).map(|_| uniform(1.2)).chain(points[..50].iter().copied()).collect();
 
         let needed = model_bytes(PointTree::bytes(points.len()) + PointTree::scratch_bytes(points.len()));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let tree = PointTree::build(&points, &mut arena).unwrap();
-        assert!(
-            tree.order()
-                .iter()
-                .zip(tree.points())
-                .all(|(&i, p)| points[i as usize] == *p)
-        );
+        assert!(tree.order().iter().zip(tree.points()).all(|(&i, p)| points[i as usize] == *p));
 
         for query in &queries {
             let mut brute: Vec<Neighbour> = (0..tree.points().len() as u32)
@@ -180,9 +159,7 @@ mod tests {
                 })
                 .collect();
             brute.sort_by(|a, b| {
-                a.distance_squared
-                    .total_cmp(&b.distance_squared)
-                    .then(a.index.cmp(&b.index))
+                a.distance_squared.total_cmp(&b.distance_squared).then(a.index.cmp(&b.index))
             });
             assert_eq!(tree.nearest(query), brute[0]);
             for k in [0, 1, 7, 30, 2000] {
@@ -193,14 +170,9 @@ mod tests {
                 let mut within = Vec::new();
                 tree.for_each_within(query, radius, |n| within.push(n));
                 within.sort_by(|a, b| {
-                    a.distance_squared
-                        .total_cmp(&b.distance_squared)
-                        .then(a.index.cmp(&b.index))
+                    a.distance_squared.total_cmp(&b.distance_squared).then(a.index.cmp(&b.index))
                 });
-                let expected = brute
-                    .iter()
-                    .filter(|n| n.distance_squared <= radius * radius)
-                    .count();
+                let expected = brute.iter().filter(|n| n.distance_squared <= radius * radius).count();
                 assert_eq!(within, &brute[..expected]);
             }
         }

@@ -67,12 +67,7 @@ impl<'m> Surface<'m> {
         }
         let triangles: &'m [[Point; 3]] = bytemuck::cast_slice(triangles);
         fill_dipoles(&bvh, triangles, dipoles);
-        Ok(Self {
-            triangles,
-            bvh,
-            dipoles,
-            orientation: if inside_out { -1.0 } else { 1.0 },
-        })
+        Ok(Self { triangles, bvh, dipoles, orientation: if inside_out { -1.0 } else { 1.0 } })
     }
 
     /// The box around the mesh.
@@ -83,15 +78,14 @@ impl<'m> Surface<'m> {
     /// How far along the unit `direction`, in metres, a ray from `origin` first meets the mesh, from either side.
     pub fn closest_hit(&self, origin: &Point, direction: &Vector) -> Option<f32> {
         let mut closest = None;
-        self.bvh
-            .visit_along(origin, direction, f32::MAX, |items, mut limit| {
-                for corners in &self.triangles[items] {
-                    if let Some(t) = triangle::ray_hit(corners, origin, direction, limit) {
-                        (closest, limit) = (Some(t), t);
-                    }
+        self.bvh.visit_along(origin, direction, f32::MAX, |items, mut limit| {
+            for corners in &self.triangles[items] {
+                if let Some(t) = triangle::ray_hit(corners, origin, direction, limit) {
+                    (closest, limit) = (Some(t), t);
                 }
-                limit
-            });
+            }
+            limit
+        });
         closest
     }
 
@@ -165,11 +159,7 @@ impl<'m> Surface<'m> {
     /// Distance to the mesh in metres, negative inside: `S[.]` of section II-B.
     pub fn signed_distance(&self, point: &Point) -> f32 {
         let distance = (self.closest_point(point) - point).norm();
-        if self.is_inside(point) {
-            -distance
-        } else {
-            distance
-        }
+        if self.is_inside(point) { -distance } else { distance }
     }
 }
 
@@ -196,12 +186,7 @@ fn fill_dipoles(bvh: &Bvh, triangles: &[[Point; 3]], dipoles: &mut [Dipole]) {
         }
         let centre = Point::from(moment / area);
         let far_squared = BETA * BETA * node.aabb().farthest_squared(&centre);
-        dipoles[index] = Dipole {
-            area_normal: area_normal.into(),
-            centre: centre.into(),
-            far_squared,
-            area,
-        };
+        dipoles[index] = Dipole { area_normal: area_normal.into(), centre: centre.into(), far_squared, area };
     }
 }
 
@@ -212,26 +197,16 @@ mod tests {
 
     /// A cube of edge 2 around the origin, without the top if `open`.
     fn with_cube(open: bool, inside_out: bool, check: impl Fn(&Surface)) {
-        let vertices: Vec<[f32; 3]> = (0..8)
-            .map(|i| [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 1.0 } else { -1.0 }))
-            .collect();
-        let quads = [
-            [0, 2, 3, 1],
-            [0, 1, 5, 4],
-            [1, 3, 7, 5],
-            [3, 2, 6, 7],
-            [2, 0, 4, 6],
-            [4, 5, 7, 6],
-        ];
+        let vertices: Vec<[f32; 3]> =
+            (0..8).map(|i| [0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 1.0 } else { -1.0 })).collect();
+        let quads = [[0, 2, 3, 1], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6], [4, 5, 7, 6]];
         let triangles: Vec<[u32; 3]> = quads[..if open { 5 } else { 6 }]
             .iter()
-            .flat_map(|&[a, b, c, d]| {
-                if inside_out {
-                    [[a, c, b], [a, d, c]]
-                } else {
-                    [[a, b, c], [a, c, d]]
-                }
-            })
+            .flat_map(
+                |&[a, b, c, d]| {
+                    if inside_out { [[a, c, b], [a, d, c]] } else { [[a, b, c], [a, c, d]] }
+                },
+            )
             .collect();
         let mesh = Mesh::new(&vertices, &triangles).unwrap();
         let needed = model_bytes(Surface::bytes(triangles.len()) + Surface::scratch_bytes(triangles.len()));
@@ -248,10 +223,7 @@ mod tests {
                 assert!(cube.winding_number(&Point::new(9.0, 1.0, 2.0)).abs() < 0.01);
                 assert!((cube.signed_distance(&Point::new(0.2, 0.0, -0.7)) + 0.3).abs() < 1e-6);
                 assert!((cube.signed_distance(&Point::new(4.0, 5.0, 1.0)) - 5.0).abs() < 1e-6);
-                assert_eq!(
-                    cube.closest_hit(&Point::new(0.0, 0.0, 5.0), &-Vector::z()),
-                    Some(4.0)
-                );
+                assert_eq!(cube.closest_hit(&Point::new(0.0, 0.0, 5.0), &-Vector::z()), Some(4.0));
                 assert_eq!(cube.closest_hit(&Point::new(0.0, 0.0, 5.0), &Vector::z()), None);
                 assert!(cube.any_hit(&Point::origin(), &Vector::y()));
                 assert!(!cube.any_hit(&Point::new(0.0, 1.1, 0.0), &Vector::y()));

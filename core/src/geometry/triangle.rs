@@ -101,11 +101,7 @@ mod tests {
 
     #[test]
     fn an_octant_is_an_eighth_of_the_sphere() {
-        let corners = [
-            Point::new(1.0, 0.0, 0.0),
-            Point::new(0.0, 1.0, 0.0),
-            Point::new(0.0, 0.0, 1.0),
-        ];
+        let corners = [Point::new(1.0, 0.0, 0.0), Point::new(0.0, 1.0, 0.0), Point::new(0.0, 0.0, 1.0)];
         let eighth = 4.0 * core::f32::consts::PI / 8.0;
         assert!((solid_angle(&corners, &Point::origin()) - eighth).abs() < 1e-6);
         let [a, b, c] = corners;
@@ -114,11 +110,7 @@ mod tests {
 
     #[test]
     fn small_and_large_angles_agree_with_double_precision() {
-        let corners = [
-            Point::new(0.0, 0.0, 0.0),
-            Point::new(1.0, 0.0, 0.0),
-            Point::new(0.0, 1.0, 0.0),
-        ];
+        let corners = [Point::new(0.0, 0.0, 0.0), Point::new(1.0, 0.0, 0.0), Point::new(0.0, 1.0, 0.0)];
         for height in [0.01_f32, 0.3, 1.0, 1.2, 1.5, 2.0, 4.0, 9.0] {
             let p = Point::new(0.2, 0.3, -height);
             let [a, b, c] = corners.map(|corner| (corner - p).cast::<f64>());

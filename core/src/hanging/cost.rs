@@ -28,28 +28,15 @@ impl Cost {
     ) -> Self {
         let [d1, d2] = support.boundary_distances;
         // A position outside the hull, or on its boundary on both sides, is as close to it as can be.
-        let boundary = if d1 + d2 > 0.0 {
-            d1.max(d2) / (d1 + d2)
-        } else {
-            1.0
-        };
+        let boundary = if d1 + d2 > 0.0 { d1.max(d2) / (d1 + d2) } else { 1.0 };
         let contact_area = 1.0 - object.contact_points as f32 / most_contact_points.max(1) as f32;
         let total = params.boundary_weight * boundary + params.contact_area_weight * contact_area;
-        Self {
-            collision: 0,
-            boundary,
-            contact_area,
-            total,
-        }
+        Self { collision: 0, boundary, contact_area, total }
     }
 
     /// The same with `collision` points inside.
     pub(super) fn with_collision(self, collision: u32, params: &Params) -> Self {
-        Self {
-            collision,
-            total: self.total + params.collision_weight * collision as f32,
-            ..self
-        }
+        Self { collision, total: self.total + params.collision_weight * collision as f32, ..self }
     }
 
     /// How many points may be inside before the total is worse than `total`.
@@ -69,14 +56,8 @@ mod tests {
     use bytemuck::Zeroable;
 
     fn cost(contact_points: u32, boundary_distances: [f32; 2]) -> Cost {
-        let object = HangingSite {
-            contact_points,
-            ..HangingSite::zeroed()
-        };
-        let support = SupportSite {
-            boundary_distances,
-            ..SupportSite::zeroed()
-        };
+        let object = HangingSite { contact_points, ..HangingSite::zeroed() };
+        let support = SupportSite { boundary_distances, ..SupportSite::zeroed() };
         Cost::without_collision(&object, 80, &support, &Params::paper())
     }
 
@@ -84,31 +65,19 @@ mod tests {
     fn equations_9_to_11() {
         let cost = cost(20, [0.03, 0.01]);
         assert_eq!((cost.boundary, cost.contact_area, cost.total), (0.75, 0.75, 1.5));
-        let hit = cost.with_collision(
-            3,
-            &Params {
-                collision_weight: 0.5,
-                ..Params::paper()
-            },
-        );
+        let hit = cost.with_collision(3, &Params { collision_weight: 0.5, ..Params::paper() });
         assert_eq!((hit.collision, hit.total), (3, 3.0));
         assert_eq!(self::cost(80, [0.0, 0.0]).total, 1.0);
     }
 
     #[test]
     fn the_collision_bound_keeps_every_match_that_is_as_good() {
-        let params = Params {
-            collision_weight: 0.3,
-            ..Params::paper()
-        };
+        let params = Params { collision_weight: 0.3, ..Params::paper() };
         let cost = cost(33, [0.02, 0.017]);
         for collision in 0..5000 {
             let total = cost.with_collision(collision, &params).total;
             let bound = cost.collisions_up_to(total, &params);
-            assert!(
-                (collision..=collision + 2).contains(&bound),
-                "{collision}: {bound}"
-            );
+            assert!((collision..=collision + 2).contains(&bound), "{collision}: {bound}");
         }
         assert!(cost.collisions_up_to(0.0, &params) <= 1);
     }

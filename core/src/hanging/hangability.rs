@@ -90,11 +90,7 @@ impl Hangability<'_> {
     ) -> Result<(HangabilityCounts, Option<Stop>), OutOfMemory> {
         let mut counts = HangabilityCounts::default();
         let contacts = scratch.slice::<Point>(self.points.len())?;
-        let selected = self
-            .points
-            .iter()
-            .zip(self.normals)
-            .filter(|(p, n)| self.is_contact(p, n));
+        let selected = self.points.iter().zip(self.normals).filter(|(p, n)| self.is_contact(p, n));
         for (slot, (point, _)) in contacts.iter_mut().zip(selected) {
             *slot = *point;
             counts.contact_points += 1;

@@ -26,11 +26,7 @@ impl HangingPose {
     /// The order of the ranking: by total cost, then by sites, so that it is the same however it is computed.
     pub(super) fn is_better(&self, other: &Self) -> bool {
         let sites = |pose: &Self| (pose.support_site, pose.object_site, pose.is_reversed);
-        self.cost
-            .total
-            .total_cmp(&other.cost.total)
-            .then(sites(self).cmp(&sites(other)))
-            .is_lt()
+        self.cost.total.total_cmp(&other.cost.total).then(sites(self).cmp(&sites(other))).is_lt()
     }
 }
 
@@ -66,16 +62,9 @@ pub(super) fn match_sites(
     poses: &mut Best<HangingPose>,
     meter: &mut Meter,
 ) -> (MatchingCounts, Option<Stop>) {
-    let mut counts = MatchingCounts {
-        pairs: object.sites().len() * supporter.sites().len(),
-        ..Default::default()
-    };
-    let most_contact_points = object
-        .sites()
-        .iter()
-        .map(|site| site.contact_points)
-        .max()
-        .unwrap_or(0);
+    let mut counts =
+        MatchingCounts { pairs: object.sites().len() * supporter.sites().len(), ..Default::default() };
+    let most_contact_points = object.sites().iter().map(|site| site.contact_points).max().unwrap_or(0);
     let points = supporter.points().points().len();
     // No more than every point, and past `u32` there are none: see `mesh::MAX_COUNT`.
     let allowed = (params.max_collision * points as f32) as u32;
@@ -98,13 +87,7 @@ pub(super) fn match_sites(
                         counts.clear += 1;
                         let cost = cost.with_collision(collision, params);
                         let (object_site, support_site) = (i as u32, j as u32);
-                        let pose = HangingPose {
-                            pose,
-                            cost,
-                            object_site,
-                            support_site,
-                            is_reversed,
-                        };
+                        let pose = HangingPose { pose, cost, object_site, support_site, is_reversed };
                         poses.offer(pose, HangingPose::is_better);
                     }
                     Ok(None) => {}
@@ -125,10 +108,7 @@ fn align(
     up: Vector,
     is_reversed: bool,
 ) -> Pose {
-    let down = unit_or(
-        centre_of_mass - object.position,
-        unit_or(centre_of_mass - object.contact_point, -up),
-    );
+    let down = unit_or(centre_of_mass - object.position, unit_or(centre_of_mass - object.contact_point, -up));
     // The hanging direction is perpendicular to down but for rounding.
     let along = object.hanging_direction - down * object.hanging_direction.dot(&down);
     let object_frame = frame(unit_or(along, any_perpendicular(down)), down);

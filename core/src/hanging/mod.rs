@@ -8,6 +8,8 @@ mod object;
 mod predict;
 mod supportability;
 mod supporter;
+#[cfg(test)]
+mod tests;
 
 pub use cost::Cost;
 pub use error::AnalysisError;
@@ -47,23 +49,13 @@ impl<'s> ContactClusters<'s> {
             seeds[index as usize] = place as u32;
         }
         let count = mean_shift::cluster(&tree, seeds, bandwidth, labels, scratch)?;
-        Ok(Self {
-            points: tree.points(),
-            labels,
-            count,
-        })
+        Ok(Self { points: tree.points(), labels, count })
     }
 
     /// For each cluster, how many points it has and which of them is closest to their centroid.
     fn iter(&self) -> impl Iterator<Item = (usize, Point)> + '_ {
         (0..self.count as u32).filter_map(|cluster| {
-            let members = || {
-                self.points
-                    .iter()
-                    .zip(self.labels)
-                    .filter(|m| *m.1 == cluster)
-                    .map(|m| m.0)
-            };
+            let members = || self.points.iter().zip(self.labels).filter(|m| *m.1 == cluster).map(|m| m.0);
             let size = members().count();
             let centroid = Point::from(members().map(|p| p.coords).sum::<Vector>() / size as f32);
             let distance = |point: &Point| (point - centroid).norm_squared();

@@ -31,10 +31,8 @@ impl<'m> Object<'m> {
             Surface::scratch_bytes(limits.triangles),
         );
         let samples = array_bytes::<Point>(limits.samples).saturating_mul(2);
-        let after_tree = larger(
-            PointTree::scratch_bytes(limits.samples),
-            hangability::scratch_bytes(limits.samples),
-        );
+        let after_tree =
+            larger(PointTree::scratch_bytes(limits.samples), hangability::scratch_bytes(limits.samples));
         let with_samples = larger(
             sampling::scratch_bytes(limits.samples),
             PointTree::bytes(limits.samples).saturating_add(after_tree),
@@ -77,28 +75,13 @@ impl<'m> Object<'m> {
         let tree = PointTree::build(points, &mut scratch)?;
         let sample_mean = mean_of(points);
         let centre_of_mass = params.resolve_centre_of_mass(sample_mean, mass.volume_centroid);
-        let search = Hangability {
-            surface: &surface,
-            points,
-            normals,
-            tree: &tree,
-            centre_of_mass,
-            params,
-        };
+        let search = Hangability { surface: &surface, points, normals, tree: &tree, centre_of_mass, params };
         let (counts, stopped) = search.find(sites, &mut meter, scratch)?;
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
         }
         let sites = &sites[..counts.sites];
-        Ok(Self {
-            surface,
-            mass,
-            centre_of_mass,
-            sites,
-            counts,
-            work: meter.work,
-            stopped,
-        })
+        Ok(Self { surface, mass, centre_of_mass, sites, counts, work: meter.work, stopped })
     }
 
     /// The mesh, for rays and distances.

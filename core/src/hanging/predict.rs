@@ -94,17 +94,9 @@ pub fn predict<'p>(
     let mut best = Best::new(poses);
     let (matching, stop) = match_sites(object, supporter, params, &mut best, &mut meter);
     meter.progress(1.0);
-    let counts = Counts {
-        hangability: object.counts(),
-        supportability: supporter.counts(),
-        matching,
-    };
+    let counts = Counts { hangability: object.counts(), supportability: supporter.counts(), matching };
     let stopped = object.stopped().or(supporter.stopped()).or(stop);
-    let rejection = if stopped.is_some() {
-        None
-    } else {
-        empty_stage(&counts)
-    };
+    let rejection = if stopped.is_some() { None } else { empty_stage(&counts) };
     Ok(Prediction {
         poses: best.into_slice(),
         rejection: rejection.map(|stage| Rejection { stage, counts }),
@@ -116,11 +108,7 @@ pub fn predict<'p>(
 
 /// The first step that left nothing, if there is one.
 fn empty_stage(counts: &Counts) -> Option<Stage> {
-    let Counts {
-        hangability,
-        supportability,
-        matching,
-    } = counts;
+    let Counts { hangability, supportability, matching } = counts;
     let steps = [
         (hangability.clusters, Stage::NoContactPoints),
         (hangability.with_free_space, Stage::NoFreeSpace),
@@ -129,8 +117,5 @@ fn empty_stage(counts: &Counts) -> Option<Stage> {
         (matching.fitting, Stage::TooThick),
         (matching.clear, Stage::AllCollide),
     ];
-    steps
-        .into_iter()
-        .find(|(left, _)| *left == 0)
-        .map(|(_, stage)| stage)
+    steps.into_iter().find(|(left, _)| *left == 0).map(|(_, stage)| stage)
 }

@@ -41,9 +41,7 @@ pub(super) const MAX_SITES: usize = 256;
 
 /// Bytes of working memory.
 pub(super) const fn scratch_bytes(points: usize) -> usize {
-    array_bytes::<Point>(points)
-        .saturating_mul(2)
-        .saturating_add(contact_cluster_bytes(points))
+    array_bytes::<Point>(points).saturating_mul(2).saturating_add(contact_cluster_bytes(points))
 }
 
 /// What the search looks at.
@@ -68,11 +66,7 @@ impl Supportability<'_> {
         let mut counts = SupportabilityCounts::default();
         let contacts = scratch.slice::<Point>(self.points.len())?;
         let faces_up = |normal: &Vector| normal.dot(&up) > self.params.supporter_contact_cosine;
-        let selected = self
-            .points
-            .iter()
-            .zip(self.normals)
-            .filter(|(_, normal)| faces_up(normal));
+        let selected = self.points.iter().zip(self.normals).filter(|(_, normal)| faces_up(normal));
         for (slot, (point, _)) in contacts.iter_mut().zip(selected) {
             *slot = *point;
             counts.contact_points += 1;
@@ -118,11 +112,7 @@ impl Supportability<'_> {
         let mut best: Option<SupportSite> = None;
         for j in 0..directions {
             meter.distance_queries(1)?;
-            let direction = rotate_about(
-                up,
-                core::f32::consts::PI * j as f32 / directions as f32,
-                reference,
-            );
+            let direction = rotate_about(up, core::f32::consts::PI * j as f32 / directions as f32, reference);
             // A slice that reaches farther than the best sphere is wide cannot have a smaller sphere.
             let reach = best.map_or(f32::INFINITY, |site| 2.0 * site.support_radius);
             let Some((centre, radius)) = self.cross_section(contact_point, direction, slice, reach) else {
@@ -157,11 +147,7 @@ impl Supportability<'_> {
     ) -> Option<(Point, f32)> {
         let offset = |point: &Point| (point - contact_point).dot(&direction).abs();
         let mut count = 0;
-        for point in self
-            .points
-            .iter()
-            .filter(|p| offset(p) < self.params.slice_half_thickness)
-        {
+        for point in self.points.iter().filter(|p| offset(p) < self.params.slice_half_thickness) {
             slice[count] = *point;
             if *point == contact_point {
                 slice.swap(0, count);
@@ -174,10 +160,7 @@ impl Supportability<'_> {
         }
         let members = &slice[..members];
         let centre = Point::from(members.iter().map(|p| p.coords).sum::<Vector>() / members.len() as f32);
-        let radius = members
-            .iter()
-            .map(|p| (p - centre).norm_squared())
-            .fold(0.0, f32::max);
+        let radius = members.iter().map(|p| (p - centre).norm_squared()).fold(0.0, f32::max);
         Some((centre, libm::sqrtf(radius)))
     }
 }

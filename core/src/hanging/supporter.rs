@@ -42,12 +42,10 @@ impl<'m> Supporter<'m> {
             PointTree::bytes(points).saturating_add(array_bytes::<SupportSite>(supportability::MAX_SITES));
         let scratch = larger(
             PointTree::scratch_bytes(points),
-            array_bytes::<Vector>(points)
-                .saturating_mul(2)
-                .saturating_add(larger(
-                    normals::scratch_bytes(points),
-                    supportability::scratch_bytes(points),
-                )),
+            array_bytes::<Vector>(points).saturating_mul(2).saturating_add(larger(
+                normals::scratch_bytes(points),
+                supportability::scratch_bytes(points),
+            )),
         );
         model_bytes(model.saturating_add(scratch))
     }
@@ -61,12 +59,7 @@ impl<'m> Supporter<'m> {
     ) -> Result<Self, AnalysisError> {
         params.validate()?;
         let points = cloud.points();
-        let limits = Limits {
-            vertices: 0,
-            triangles: 0,
-            samples: 0,
-            points: points.len(),
-        };
+        let limits = Limits { vertices: 0, triangles: 0, samples: 0, points: points.len() };
         let mut arena = Arena::new(memory, Self::bytes(&limits))?;
         let mut meter = Meter::new(monitor);
 
@@ -95,24 +88,12 @@ impl<'m> Supporter<'m> {
         for (normal, &index) in in_tree_order.iter().zip(tree.order()) {
             in_cloud_order[index as usize] = *normal;
         }
-        let search = Supportability {
-            tree: &tree,
-            points,
-            normals: in_cloud_order,
-            params,
-        };
+        let search = Supportability { tree: &tree, points, normals: in_cloud_order, params };
         let (counts, stopped) = search.find(sites, &mut meter, scratch)?;
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
         }
-        Ok(Self {
-            tree,
-            sites: &sites[..counts.sites],
-            normals,
-            counts,
-            work: meter.work,
-            stopped,
-        })
+        Ok(Self { tree, sites: &sites[..counts.sites], normals, counts, work: meter.work, stopped })
     }
 
     /// The points, for neighbour queries.

@@ -48,13 +48,9 @@ fn fit(tree: &PointTree, point: &Point) -> Vector {
     let offsets = || neighbours.iter().map(|n| tree.points()[n.index as usize] - point);
     let mean = offsets().sum::<Vector>() / neighbours.len() as f32;
     // Scaled by the reach, so that the squares of millimetres keep their precision.
-    let reach = offsets()
-        .map(|offset| offset.amax())
-        .fold(f32::MIN_POSITIVE, f32::max);
-    let covariance: Matrix3<f32> = offsets()
-        .map(|offset| (offset - mean) / reach)
-        .map(|offset| offset * offset.transpose())
-        .sum();
+    let reach = offsets().map(|offset| offset.amax()).fold(f32::MIN_POSITIVE, f32::max);
+    let covariance: Matrix3<f32> =
+        offsets().map(|offset| (offset - mean) / reach).map(|offset| offset * offset.transpose()).sum();
     least_eigenvector(covariance)
 }
 
@@ -77,10 +73,7 @@ fn propagate(
     let from_top = scratch.slice::<u32>(points.len())?;
     let parents = scratch.slice::<u32>(points.len())?;
     let weights = scratch.slice::<f32>(points.len())?;
-    let (order, places) = (
-        scratch.slice::<u32>(points.len())?,
-        scratch.slice::<u32>(points.len())?,
-    );
+    let (order, places) = (scratch.slice::<u32>(points.len())?, scratch.slice::<u32>(points.len())?);
     for (slot, index) in from_top.iter_mut().zip(0..) {
         *slot = index;
     }
@@ -97,11 +90,7 @@ fn propagate(
         }
         heap.offer(top as usize, 0.0);
         while let Some(index) = heap.pop() {
-            let like = if parents[index] == WAITING {
-                up
-            } else {
-                normals[parents[index] as usize]
-            };
+            let like = if parents[index] == WAITING { up } else { normals[parents[index] as usize] };
             if normals[index].dot(&like) < 0.0 {
                 normals[index] = -normals[index];
             }
@@ -172,11 +161,8 @@ mod tests {
         let points: Vec<Point> = points.into_iter().map(Into::into).collect();
         let tree = PointTree::build(&points, &mut arena).unwrap();
         let truth: Vec<Vector> = tree.order().iter().map(|&i| truth[i as usize].into()).collect();
-        let mut normals: Vec<Vector> = truth
-            .iter()
-            .enumerate()
-            .map(|(i, &normal)| known(i, normal))
-            .collect();
+        let mut normals: Vec<Vector> =
+            truth.iter().enumerate().map(|(i, &normal)| known(i, normal)).collect();
         let missing = complete(&tree, &mut normals, viewpoint, Vector::z(), arena.scratch()).unwrap();
         check(tree.points(), &truth, &normals, missing);
     }
@@ -210,7 +196,7 @@ mod tests {
     #[test]
     fn a_few_missing_ones_follow_their_neighbours() {
         // Known normals point inwards here, to see that they are what is followed.
-        let known = |i: usize, normal: Vector| if i % 7 == 0 { Vector::zeros() } else { -normal };
+        let known = |i: usize, normal: Vector| if i.is_multiple_of(7) { Vector::zeros() } else { -normal };
         with_completed(known, None, |_, truth, normals, missing| {
             assert_eq!(missing, 3000_usize.div_ceil(7));
             assert!(truth.iter().zip(normals).all(|(t, n)| t.dot(n) < -0.95));

@@ -40,10 +40,7 @@ pub fn sample(
     memory: &mut [u8],
 ) -> Result<(), OutOfMemory> {
     let scratch = Arena::new(memory, sample_bytes(points.len()))?;
-    let (points, normals) = (
-        bytemuck::cast_slice_mut(points),
-        bytemuck::cast_slice_mut(normals),
-    );
+    let (points, normals) = (bytemuck::cast_slice_mut(points), bytemuck::cast_slice_mut(normals));
     sample_into(mesh, seed, points, normals, scratch)
 }
 
@@ -81,10 +78,7 @@ struct Candidate {
 /// Draws candidates uniformly by area, in the order of the triangles, and returns the area in m².
 fn draw(mesh: &Mesh, seed: u64, candidates: &mut [Candidate]) -> f32 {
     let normal_of = |t: u32| crate::geometry::scaled_normal(&mesh.corners(t as usize));
-    let total: f64 = mesh
-        .solid_triangles()
-        .map(|t| f64::from(normal_of(t).norm()) / 2.0)
-        .sum();
+    let total: f64 = mesh.solid_triangles().map(|t| f64::from(normal_of(t).norm()) / 2.0).sum();
     let mut random = Random::new(seed);
     // One candidate in each of as many equal shares of the area, so that no part is left out by chance.
     let share = total / candidates.len() as f64;
@@ -98,10 +92,7 @@ fn draw(mesh: &Mesh, seed: u64, candidates: &mut [Candidate]) -> f32 {
         while drawn < candidates.len() && (is_last || (drawn as f64 + 0.5) * share < covered) {
             let (s, t) = (libm::sqrtf(random.next_f32()), random.next_f32());
             let position = a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t);
-            candidates[drawn] = Candidate {
-                position: position.into(),
-                triangle,
-            };
+            candidates[drawn] = Candidate { position: position.into(), triangle };
             drawn += 1;
         }
     }
@@ -157,9 +148,7 @@ impl<'s> Cells<'s> {
         let starts = scratch.slice::<u32>(drawn.len() + 1)?;
         let rows = scratch.slice::<[u32; 9]>(drawn.len())?;
 
-        let low = drawn.iter().fold(Point::from([f32::INFINITY; 3]), |low, c| {
-            low.inf(&c.position.into())
-        });
+        let low = drawn.iter().fold(Point::from([f32::INFINITY; 3]), |low, c| low.inf(&c.position.into()));
         // Sort keys first: number and index.
         for (index, (key, candidate)) in numbers.iter_mut().zip(drawn).enumerate() {
             let offset = (Point::from(candidate.position) - low) / width;
@@ -191,13 +180,7 @@ impl<'s> Cells<'s> {
                 rows[row] = first as u32;
             }
         }
-        Ok(Self {
-            cell_of,
-            starts: &starts[..=cells],
-            rows,
-            numbers,
-            width,
-        })
+        Ok(Self { cell_of, starts: &starts[..=cells], rows, numbers, width })
     }
 
     /// Calls `visit` for each other candidate closer to candidate `index` than the width, with the distance.
@@ -210,8 +193,9 @@ impl<'s> Cells<'s> {
             while last < self.numbers.len() && self.numbers[last] <= end {
                 last += 1;
             }
-            for other in self.starts[first as usize] as usize..self.starts[last] as usize {
-                let distance_squared = (Point::from(candidates[other].position) - position).norm_squared();
+            let neighbours = self.starts[first as usize] as usize..self.starts[last] as usize;
+            for (other, candidate) in neighbours.clone().zip(&candidates[neighbours]) {
+                let distance_squared = (Point::from(candidate.position) - position).norm_squared();
                 if distance_squared < self.width * self.width && other != index {
                     visit(other, libm::sqrtf(distance_squared));
                 }
@@ -273,18 +257,8 @@ mod tests {
 
     fn samples_of(mesh: &Mesh, count: usize, seed: u64) -> (Vec<Point>, Vec<Vector>) {
         let (mut points, mut normals) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
-        sample(
-            mesh,
-            seed,
-            &mut points,
-            &mut normals,
-            &mut vec![0; sample_bytes(count)],
-        )
-        .unwrap();
-        (
-            points.into_iter().map(Into::into).collect(),
-            normals.into_iter().map(Into::into).collect(),
-        )
+        sample(mesh, seed, &mut points, &mut normals, &mut vec![0; sample_bytes(count)]).unwrap();
+        (points.into_iter().map(Into::into).collect(), normals.into_iter().map(Into::into).collect())
     }
 
     #[test]
@@ -307,25 +281,15 @@ mod tests {
                 .flat_map(|i| (0..i).map(move |j| (i, j)))
                 .map(|(i, j)| (points[i] - points[j]).norm())
                 .fold(f32::INFINITY, f32::min);
-            assert!(
-                count < 500 || closest > 0.6 * 2.0 * r_max,
-                "{count}: {closest} of {}",
-                2.0 * r_max
-            );
+            assert!(count < 500 || closest > 0.6 * 2.0 * r_max, "{count}: {closest} of {}", 2.0 * r_max);
         }
     }
 
     #[test]
     fn the_same_seed_gives_the_same_bytes() {
         let torus = test_shapes::torus(0.04, 0.01, 48, 16);
-        assert_eq!(
-            samples_of(&torus.mesh(), 300, 5),
-            samples_of(&torus.mesh(), 300, 5)
-        );
-        assert_ne!(
-            samples_of(&torus.mesh(), 300, 5),
-            samples_of(&torus.mesh(), 300, 6)
-        );
+        assert_eq!(samples_of(&torus.mesh(), 300, 5), samples_of(&torus.mesh(), 300, 5));
+        assert_ne!(samples_of(&torus.mesh(), 300, 5), samples_of(&torus.mesh(), 300, 6));
     }
 
     #[test]

@@ -79,10 +79,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Ply, FileError> {
     let body = reader.get_ref().position() as usize;
     check_lengths(source, &header, body)?;
 
-    let mut ply = Ply {
-        mesh: RawMesh::default(),
-        normals: None,
-    };
+    let mut ply = Ply { mesh: RawMesh::default(), normals: None };
     let mut text = Text::new(source, body);
     for element in header.elements.values() {
         let rows = match header.encoding {
@@ -129,15 +126,9 @@ impl Ply {
         if !has(&NAMES[..3]) {
             return Err(source.malformed(Place::Part("element vertex".into()), "it lacks x, y or z"));
         }
-        self.mesh.vertices = rows
-            .iter()
-            .map(|(row, _)| [0, 1, 2].map(|k| row.numbers[k]))
-            .collect();
-        self.normals = has(&NAMES[3..]).then(|| {
-            rows.iter()
-                .map(|(row, _)| [3, 4, 5].map(|k| row.numbers[k]))
-                .collect()
-        });
+        self.mesh.vertices = rows.iter().map(|(row, _)| [0, 1, 2].map(|k| row.numbers[k])).collect();
+        self.normals =
+            has(&NAMES[3..]).then(|| rows.iter().map(|(row, _)| [3, 4, 5].map(|k| row.numbers[k])).collect());
         Ok(())
     }
 
@@ -220,10 +211,7 @@ impl<'a> Text<'a> {
     fn new(source: &'a Source<'a>, body: usize) -> Self {
         let before = source.bytes[..body].iter().filter(|b| **b == b'\n').count();
         let lines = lines(&source.bytes[body..]).map(move |(n, line)| (n + before, line));
-        Self {
-            source,
-            lines: Box::new(lines.filter(|(_, line)| !line.is_empty())),
-        }
+        Self { source, lines: Box::new(lines.filter(|(_, line)| !line.is_empty())) }
     }
 
     fn rows(&mut self, element: &ElementDef) -> Result<Vec<(Row, usize)>, FileError> {
@@ -248,9 +236,7 @@ fn row(element: &ElementDef, text: &str) -> Result<Row, String> {
     let mut words = text.split_ascii_whitespace();
     let mut row = Row::default();
     for (name, property) in &element.properties {
-        let word = words
-            .next()
-            .ok_or_else(|| format!("{name} of element {} is missing", element.name))?;
+        let word = words.next().ok_or_else(|| format!("{name} of element {} is missing", element.name))?;
         let nonsense =
             |word: &str| format!("{name} of element {} cannot be \"{}\"", element.name, short(word));
         match property.data_type {
@@ -274,11 +260,9 @@ fn row(element: &ElementDef, text: &str) -> Result<Row, String> {
         }
     }
     match words.next() {
-        Some(word) => Err(format!(
-            "\"{}\" is more than the header declares for element {}",
-            short(word),
-            element.name
-        )),
+        Some(word) => {
+            Err(format!("\"{}\" is more than the header declares for element {}", short(word), element.name))
+        }
         None => Ok(row),
     }
 }

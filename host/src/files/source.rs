@@ -60,18 +60,11 @@ pub(super) struct Source<'a> {
 impl<'a> Source<'a> {
     /// Reads the whole file; `known` lists the extensions that would do, for the error.
     pub(super) fn open(path: &'a Path, known: &'static str) -> Result<Self, FileError> {
-        let extension = path
-            .extension()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .to_ascii_lowercase();
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let format = Format::of(&extension);
         let bytes = read(path)?;
-        let format = format.ok_or_else(|| FileError::UnknownFormat {
-            path: path.into(),
-            extension,
-            known,
-        })?;
+        let format =
+            format.ok_or_else(|| FileError::UnknownFormat { path: path.into(), extension, known })?;
         if bytes.is_empty() {
             return Err(FileError::Empty { path: path.into() });
         }
@@ -88,27 +81,16 @@ impl<'a> Source<'a> {
     }
 
     pub(super) fn truncated(&self, place: Place, reason: impl Into<String>) -> FileError {
-        FileError::Truncated {
-            path: self.path.into(),
-            place,
-            reason: reason.into(),
-        }
+        FileError::Truncated { path: self.path.into(), place, reason: reason.into() }
     }
 
     pub(super) fn not_finite(&self, item: &'static str, index: usize) -> FileError {
-        FileError::NotFinite {
-            path: self.path.into(),
-            item,
-            index,
-        }
+        FileError::NotFinite { path: self.path.into(), item, index }
     }
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, FileError> {
-    let unreadable = |reason: &str| FileError::Unreadable {
-        path: path.into(),
-        reason: reason.into(),
-    };
+    let unreadable = |reason: &str| FileError::Unreadable { path: path.into(), reason: reason.into() };
     let from_io = |e: std::io::Error| match e.kind() {
         ErrorKind::NotFound => FileError::Missing { path: path.into() },
         _ => unreadable(&e.to_string()),

@@ -15,10 +15,7 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, str>)>
 
 /// What stands before a `#`, unless it is the one in `1.#QNAN`.
 pub(super) fn before_comment(line: &str) -> &str {
-    match line
-        .match_indices('#')
-        .find(|(at, _)| !line[..*at].ends_with('.'))
-    {
+    match line.match_indices('#').find(|(at, _)| !line[..*at].ends_with('.')) {
         Some((at, _)) => &line[..at],
         None => line,
     }
@@ -44,11 +41,7 @@ pub(super) fn three<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<[f3
 
 /// A word from a file, cut so that it fits into a message.
 pub(super) fn short(word: &str) -> String {
-    let mut cut: String = word
-        .chars()
-        .take(24)
-        .map(|c| if c.is_control() { '?' } else { c })
-        .collect();
+    let mut cut: String = word.chars().take(24).map(|c| if c.is_control() { '?' } else { c }).collect();
     if word.chars().nth(24).is_some() {
         cut.push_str("...");
     }

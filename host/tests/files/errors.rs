@@ -27,11 +27,7 @@ fn bad_cloud(name: &str, content: impl AsRef<[u8]>, parts: &[&str]) {
 #[test]
 fn no_file_no_content_no_format() {
     let missing = Path::new("/nowhere/mug.obj");
-    assert_says(
-        read_mesh(missing).unwrap_err(),
-        "mug.obj",
-        &["no such file; check the path"],
-    );
+    assert_says(read_mesh(missing).unwrap_err(), "mug.obj", &["no such file; check the path"]);
     let directory = tempfile::TempDir::with_suffix(".obj").unwrap();
     assert_says(
         read_mesh(directory.path()).unwrap_err(),
@@ -42,30 +38,18 @@ fn no_file_no_content_no_format() {
     bad_mesh(
         "mug.step",
         "x",
-        &[
-            "\".step\" is not a format",
-            "known are obj, stl, ply, glb and gltf",
-            "export",
-        ],
+        &["\".step\" is not a format", "known are obj, stl, ply, glb and gltf", "export"],
     );
     bad_mesh("mug", "x", &["the name has no extension"]);
     bad_cloud("scan.las", "x", &["known are ply, pcd, xyz, txt and pts"]);
     let supporter = read_supporter(&file("rack.fbx", "x").path).unwrap_err();
-    assert_says(
-        supporter,
-        "rack.fbx",
-        &["known are obj, stl, ply, glb, gltf, pcd, xyz, txt and pts"],
-    );
+    assert_says(supporter, "rack.fbx", &["known are obj, stl, ply, glb, gltf, pcd, xyz, txt and pts"]);
 }
 
 #[test]
 fn cut_off() {
     let cube = stl_binary_cube("");
-    bad_mesh(
-        "a.stl",
-        &cube[..50],
-        &["byte 50: ", "84 bytes of header", "cut off"],
-    );
+    bad_mesh("a.stl", &cube[..50], &["byte 50: ", "84 bytes of header", "cut off"]);
     bad_mesh(
         "a.stl",
         &cube[..500],
@@ -106,50 +90,22 @@ fn cut_off() {
         pcd_text().replace("5 6 0\n", ""),
         &["the header promises 4 points, but 3 lines follow it"],
     );
-    bad_cloud(
-        "a.pts",
-        "3\n1 2 3\n4 5 6\n",
-        &["a count of 3 points, but has 2", "cut off"],
-    );
+    bad_cloud("a.pts", "3\n1 2 3\n4 5 6\n", &["a count of 3 points, but has 2", "cut off"]);
 }
 
 #[test]
 fn not_what_it_says() {
-    bad_mesh(
-        "a.obj",
-        "v 0 0 0\nv 1 0\n",
-        &["line 2: expected three numbers", "re-export"],
-    );
-    bad_mesh(
-        "a.obj",
-        "v 0 0 zero\n",
-        &["line 1: expected a number, not \"zero\""],
-    );
-    bad_mesh(
-        "a.obj",
-        "v 0 0 0\nf 1 0 1\n",
-        &["line 2: \"0\" is not a vertex: vertices are counted from 1"],
-    );
-    bad_mesh(
-        "a.obj",
-        "v 0 0 0\nf 1 1\n",
-        &["line 2: a face needs three corners, this one has 2"],
-    );
+    bad_mesh("a.obj", "v 0 0 0\nv 1 0\n", &["line 2: expected three numbers", "re-export"]);
+    bad_mesh("a.obj", "v 0 0 zero\n", &["line 1: expected a number, not \"zero\""]);
+    bad_mesh("a.obj", "v 0 0 0\nf 1 0 1\n", &["line 2: \"0\" is not a vertex: vertices are counted from 1"]);
+    bad_mesh("a.obj", "v 0 0 0\nf 1 1\n", &["line 2: a face needs three corners, this one has 2"]);
     bad_mesh(
         "a.stl",
         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\nendloop\nendfacet\nendsolid\n",
         &["line 6: a facet needs three vertices, this one has 1"],
     );
-    bad_mesh(
-        "a.stl",
-        "solid a\nfacette\n",
-        &["line 2: did not expect \"facette\" here", "binary STL"],
-    );
-    bad_mesh(
-        "a.ply",
-        "solid a\n",
-        &["line 1: Expected magic number 'ply'", "check that it is a PLY"],
-    );
+    bad_mesh("a.stl", "solid a\nfacette\n", &["line 2: did not expect \"facette\" here", "binary STL"]);
+    bad_mesh("a.ply", "solid a\n", &["line 1: Expected magic number 'ply'", "check that it is a PLY"]);
     bad_mesh(
         "a.ply",
         ply_text_cube().replace("4 0 2 3 1", "4 0 2 x 1"),
@@ -160,22 +116,14 @@ fn not_what_it_says() {
         ply_text_cube().replace("0 0 0 255", "0 0 0 255 7"),
         &["line 12: \"7\" is more than the header declares"],
     );
-    bad_mesh(
-        "a.ply",
-        ply_text_cube().replace("float z", "float w"),
-        &["element vertex: it lacks x, y or z"],
-    );
+    bad_mesh("a.ply", ply_text_cube().replace("float z", "float w"), &["element vertex: it lacks x, y or z"]);
     bad_mesh(
         "a.ply",
         ply_text_cube().replace("vertex_indices", "corners"),
         &["element face: it lacks vertex_indices"],
     );
     bad_mesh("a.glb", "not a glb at all", &["re-export it as glb"]);
-    bad_mesh(
-        "a.gltf",
-        GLTF_TRIANGLE.replace("\"mesh\":0", "\"mesh\":5"),
-        &["nodes[0].mesh"],
-    );
+    bad_mesh("a.gltf", GLTF_TRIANGLE.replace("\"mesh\":0", "\"mesh\":5"), &["nodes[0].mesh"]);
     bad_mesh(
         "a.gltf",
         GLTF_TRIANGLE.replace("5126", "5122"),
@@ -191,45 +139,15 @@ fn not_what_it_says() {
         gltf_cube_json(r#"{"mesh":0}"#, r#""uri":"cube.bin","#),
         &["cube.bin is missing: keep it beside the glTF"],
     );
-    let draco = GLTF_TRIANGLE.replace(
-        "\"nodes\"",
-        "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"nodes\"",
-    );
-    bad_mesh(
-        "a.gltf",
-        draco,
-        &["an extension that is not read here", "without mesh compression"],
-    );
-    bad_cloud(
-        "a.pcd",
-        "VERSION 0.7\nFIELDS x y z\n",
-        &["the header: ", "save it as binary PCD"],
-    );
-    bad_cloud(
-        "a.pcd",
-        pcd_text().replace("FIELDS x y z", "FIELDS x y w"),
-        &["FIELDS lacks x, y or z"],
-    );
-    bad_cloud(
-        "a.pcd",
-        pcd_text().replace("3 4 0", "3 four 0"),
-        &["point 2 (counted from 0)"],
-    );
-    bad_cloud(
-        "a.xyz",
-        "x y z\n1 2 3\n",
-        &["line 1: expected a number, not \"x\"", "put # before headings"],
-    );
-    bad_cloud(
-        "a.xyz",
-        "1 2 3\n1 2\n",
-        &["line 2: the points before have 3 numbers, this one has 2"],
-    );
-    bad_cloud(
-        "a.xyz",
-        "1 2 3 4 5\n",
-        &["line 1: expected 3 numbers (x y z) or 6 (and a normal), found 5"],
-    );
+    let draco = GLTF_TRIANGLE
+        .replace("\"nodes\"", "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"nodes\"");
+    bad_mesh("a.gltf", draco, &["an extension that is not read here", "without mesh compression"]);
+    bad_cloud("a.pcd", "VERSION 0.7\nFIELDS x y z\n", &["the header: ", "save it as binary PCD"]);
+    bad_cloud("a.pcd", pcd_text().replace("FIELDS x y z", "FIELDS x y w"), &["FIELDS lacks x, y or z"]);
+    bad_cloud("a.pcd", pcd_text().replace("3 4 0", "3 four 0"), &["point 2 (counted from 0)"]);
+    bad_cloud("a.xyz", "x y z\n1 2 3\n", &["line 1: expected a number, not \"x\"", "put # before headings"]);
+    bad_cloud("a.xyz", "1 2 3\n1 2\n", &["line 2: the points before have 3 numbers, this one has 2"]);
+    bad_cloud("a.xyz", "1 2 3 4 5\n", &["line 1: expected 3 numbers (x y z) or 6 (and a normal), found 5"]);
 }
 
 #[test]
@@ -241,11 +159,7 @@ fn nothing_in_it() {
     );
     bad_mesh("a.stl", "solid a\nendsolid a\n", &["holds no triangles"]);
     bad_mesh("a.stl", stl_binary("", &[]), &["holds no triangles"]);
-    bad_mesh(
-        "a.gltf",
-        r#"{"asset":{"version":"2.0"}}"#,
-        &["holds no triangles"],
-    );
+    bad_mesh("a.gltf", r#"{"asset":{"version":"2.0"}}"#, &["holds no triangles"]);
     bad_cloud("a.xyz", "# nothing\n", &["holds no points; check"]);
     bad_cloud(
         "a.pcd",
@@ -275,31 +189,11 @@ fn numbers_that_are_none() {
         obj_cube().replace("v 1 1 1", "v 1 nan 1"),
         &["vertex 7 (counted from 0) is not finite; check the exporter"],
     );
-    bad_mesh(
-        "a.obj",
-        obj_cube().replace("v 1 1 1", "v 1 1e39 1"),
-        &["vertex 7 "],
-    );
-    bad_mesh(
-        "a.stl",
-        stl_text_cube().replacen("vertex 0 0 0", "vertex 0 inf 0", 1),
-        &["vertex 0 "],
-    );
-    bad_mesh(
-        "a.stl",
-        stl_binary("", &[[CUBE[0], CUBE[1], [0.0, f32::NAN, 0.0]]]),
-        &["vertex 2 "],
-    );
-    bad_mesh(
-        "a.ply",
-        ply_text_cube().replace("0 1 1 255", "0 -nan 1 255"),
-        &["vertex 6 "],
-    );
-    bad_cloud(
-        "a.ply",
-        PLY_CLOUD.replace("-1 .5", "inf .5"),
-        &["point 1 (counted from 0) is not finite"],
-    );
+    bad_mesh("a.obj", obj_cube().replace("v 1 1 1", "v 1 1e39 1"), &["vertex 7 "]);
+    bad_mesh("a.stl", stl_text_cube().replacen("vertex 0 0 0", "vertex 0 inf 0", 1), &["vertex 0 "]);
+    bad_mesh("a.stl", stl_binary("", &[[CUBE[0], CUBE[1], [0.0, f32::NAN, 0.0]]]), &["vertex 2 "]);
+    bad_mesh("a.ply", ply_text_cube().replace("0 1 1 255", "0 -nan 1 255"), &["vertex 6 "]);
+    bad_cloud("a.ply", PLY_CLOUD.replace("-1 .5", "inf .5"), &["point 1 (counted from 0) is not finite"]);
     bad_cloud(
         "a.ply",
         PLY_CLOUD.replace("0 0 2", "0 nan 2"),
@@ -314,10 +208,7 @@ fn indices_out_of_range() {
     bad_mesh(
         "a.obj",
         obj_cube() + "f 1 2 9\n",
-        &[
-            "line 17 uses vertex 9, but there are 8 vertices, counted from 1",
-            "export it again",
-        ],
+        &["line 17 uses vertex 9, but there are 8 vertices, counted from 1", "export it again"],
     );
     bad_mesh(
         "a.obj",
@@ -329,18 +220,10 @@ fn indices_out_of_range() {
         ply_text_cube().replace("4 1 3 7 5", "4 1 3 8 5"),
         &["line 25 uses vertex 8, but there are 8 vertices, counted from 0"],
     );
-    bad_mesh(
-        "a.ply",
-        ply_text_cube().replace("4 1 3 7 5", "4 1 3 -1 5"),
-        &["line 25 uses vertex -1"],
-    );
+    bad_mesh("a.ply", ply_text_cube().replace("4 1 3 7 5", "4 1 3 -1 5"), &["line 25 uses vertex -1"]);
     let mut binary = ply_binary_cube(false);
     *binary.last_mut().unwrap() = 0xff;
-    bad_mesh(
-        "a.ply",
-        binary,
-        &["face 5 (counted from 0) uses vertex -16777211, but there are 8"],
-    );
+    bad_mesh("a.ply", binary, &["face 5 (counted from 0) uses vertex -16777211, but there are 8"]);
     let mut buffer = gltf_cube_buffer();
     buffer[96] = 8;
     bad_mesh(

@@ -46,9 +46,7 @@ fn read(file: &File, content: &[u8]) {
         Ok(SupporterFile::Cloud(cloud)) => {
             assert!(finite(&cloud.points) && !cloud.points.is_empty());
             assert!(
-                cloud
-                    .normals
-                    .is_none_or(|normals| finite(&normals) && normals.len() == cloud.points.len())
+                cloud.normals.is_none_or(|normals| finite(&normals) && normals.len() == cloud.points.len())
             );
         }
         Err(error) => assert!(error.to_string().starts_with(&file.path.display().to_string())),
@@ -58,13 +56,9 @@ fn read(file: &File, content: &[u8]) {
 /// The most memory this process ever asked for, where the system tells.
 fn assert_modest_memory() {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let peak = status.lines().find_map(|line| {
-        line.strip_prefix("VmPeak:")?
-            .trim()
-            .strip_suffix(" kB")?
-            .parse()
-            .ok()
-    });
+    let peak = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmPeak:")?.trim().strip_suffix(" kB")?.parse().ok());
     assert!(peak.unwrap_or(0_u64) < 2_000_000, "{peak:?} kB");
 }
 
@@ -117,10 +111,7 @@ fn the_format_is_another() {
             read(&file, content);
         }
         let mut state = 7;
-        read(
-            &file,
-            &(0..4096).map(|_| random(&mut state) as u8).collect::<Vec<_>>(),
-        );
+        read(&file, &(0..4096).map(|_| random(&mut state) as u8).collect::<Vec<_>>());
         read(&file, &[0; 4096]);
     }
 }
@@ -150,28 +141,10 @@ fn headers_that_lie() {
 
     let lies: Vec<(&str, Vec<u8>)> = vec![
         ("a.stl", stl),
-        (
-            "a.ply",
-            ply(&format!("ascii 1.0\nelement vertex 4000000000\n{xyz}")).into(),
-        ),
-        (
-            "a.ply",
-            ply(&format!(
-                "binary_little_endian 1.0\nelement vertex 4000000000\n{xyz}"
-            ))
-            .into(),
-        ),
-        (
-            "a.ply",
-            ply(&format!(
-                "binary_big_endian 1.0\nelement vertex 18446744073709551615\n{xyz}"
-            ))
-            .into(),
-        ),
-        (
-            "a.ply",
-            ply("binary_big_endian 1.0\nelement nothing 4000000000\nelement vertex 0").into(),
-        ),
+        ("a.ply", ply(&format!("ascii 1.0\nelement vertex 4000000000\n{xyz}")).into()),
+        ("a.ply", ply(&format!("binary_little_endian 1.0\nelement vertex 4000000000\n{xyz}")).into()),
+        ("a.ply", ply(&format!("binary_big_endian 1.0\nelement vertex 18446744073709551615\n{xyz}")).into()),
+        ("a.ply", ply("binary_big_endian 1.0\nelement nothing 4000000000\nelement vertex 0").into()),
         (
             "a.ply",
             ply("ascii 1.0\nelement face 1\nproperty list uint int vertex_indices")
@@ -200,25 +173,10 @@ fn headers_that_lie() {
         ("a.pcd", packed),
         ("a.gltf", gltf("\"count\":3", "\"count\":4000000000")),
         ("a.gltf", gltf("\"count\":3", "\"count\":0")),
-        (
-            "a.gltf",
-            gltf("\"byteLength\":44", "\"byteLength\":18446744073709551615"),
-        ),
-        (
-            "a.gltf",
-            gltf("\"byteOffset\":8", "\"byteOffset\":18446744073709551615"),
-        ),
-        (
-            "a.gltf",
-            gltf("\"byteLength\":36", "\"byteLength\":18446744073709551615"),
-        ),
-        (
-            "a.gltf",
-            gltf(
-                "\"bufferView\":1",
-                "\"byteOffset\":18446744073709551615,\"bufferView\":1",
-            ),
-        ),
+        ("a.gltf", gltf("\"byteLength\":44", "\"byteLength\":18446744073709551615")),
+        ("a.gltf", gltf("\"byteOffset\":8", "\"byteOffset\":18446744073709551615")),
+        ("a.gltf", gltf("\"byteLength\":36", "\"byteLength\":18446744073709551615")),
+        ("a.gltf", gltf("\"bufferView\":1", "\"byteOffset\":18446744073709551615,\"bufferView\":1")),
         ("a.pts", b"4000000000\n1 2 3\n".into()),
     ];
     for (name, content) in lies {

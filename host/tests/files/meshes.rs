@@ -25,11 +25,7 @@ fn every_format_reads_the_same_cube() {
 #[test]
 fn a_binary_stl_may_begin_with_solid() {
     assert_unit_cube(
-        &mesh(
-            "cube.stl",
-            stl_binary_cube("solid exported by a program that does not know better"),
-        )
-        .unwrap(),
+        &mesh("cube.stl", stl_binary_cube("solid exported by a program that does not know better")).unwrap(),
     );
 }
 
@@ -71,10 +67,7 @@ fn obj_merges_groups_and_knows_every_form_of_corner() {
 fn vertices_at_the_same_place_are_joined_and_unused_ones_left_out() {
     let content = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 nan\nv 1 0 -0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 5 6 7\n";
     let mesh = mesh("square.obj", content).unwrap();
-    assert_eq!(
-        mesh.vertices,
-        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]]
-    );
+    assert_eq!(mesh.vertices, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]]);
     assert_eq!(mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
     let notes = [
         "6 vertices stand at 4 places and were joined.",
@@ -88,10 +81,7 @@ fn faces_with_repeated_vertices_are_dropped_but_thin_ones_kept() {
     let content = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 1 3\nf 1 2 4\nf 3 2 2 1\nf 2 3 2 4\n";
     let mesh = mesh("thin.obj", content).unwrap();
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 1, 3], [2, 1, 0]]);
-    let notes = [
-        "2 of 5 faces had repeated vertices and were dropped.",
-        "1 of 3 triangles have no area.",
-    ];
+    let notes = ["2 of 5 faces had repeated vertices and were dropped.", "1 of 3 triangles have no area."];
     assert_eq!(mesh.notes, notes);
 }
 
@@ -105,54 +95,35 @@ fn glb_applies_the_transforms_of_all_nodes() {
     assert!((volume(&turned) - 8.0).abs() < 1e-5);
     for (read, [x, y, z]) in turned.vertices.iter().zip(CUBE) {
         let expected = [10.0 - 2.0 * y, 2.0 * x, 2.0 * z];
-        assert!(
-            read.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-5),
-            "{read:?} {expected:?}"
-        );
+        assert!(read.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-5), "{read:?} {expected:?}");
     }
 
     // A matrix, column by column, that mirrors x: the surface must not turn inside out.
-    let mirrored = mesh(
-        "mirrored.glb",
-        glb_cube(r#"{"matrix":[-1,0,0,0,0,1,0,0,0,0,1,0,5,0,0,1],"mesh":0}"#),
-    )
-    .unwrap();
+    let mirrored =
+        mesh("mirrored.glb", glb_cube(r#"{"matrix":[-1,0,0,0,0,1,0,0,0,0,1,0,5,0,0,1],"mesh":0}"#)).unwrap();
     assert!((volume(&mirrored) - 1.0).abs() < 1e-9);
     assert!(mirrored.vertices.contains(&[5.0, 0.0, 0.0]) && mirrored.vertices.contains(&[4.0, 1.0, 1.0]));
 
     // One mesh, two nodes, one of them without a scene to itself.
-    let two = mesh(
-        "two.glb",
-        glb_cube(r#"{"mesh":0,"children":[1]},{"mesh":0,"translation":[0,0,3]}"#),
-    )
-    .unwrap();
+    let two =
+        mesh("two.glb", glb_cube(r#"{"mesh":0,"children":[1]},{"mesh":0,"translation":[0,0,3]}"#)).unwrap();
     assert_eq!(two.triangles.len(), 24);
     assert!((volume(&two) - 2.0).abs() < 1e-9);
 }
 
 #[test]
 fn a_circle_of_nodes_ends() {
-    let mesh = mesh(
-        "circle.glb",
-        glb_cube(r#"{"mesh":0,"children":[1]},{"children":[0]}"#),
-    )
-    .unwrap();
+    let mesh = mesh("circle.glb", glb_cube(r#"{"mesh":0,"children":[1]},{"children":[0]}"#)).unwrap();
     assert_unit_cube(&mesh);
 }
 
 #[test]
 fn gltf_reads_data_uris_and_files_beside_it() {
     let triangle = mesh("triangle.gltf", GLTF_TRIANGLE).unwrap();
-    assert_eq!(
-        triangle.vertices,
-        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
-    );
+    assert_eq!(triangle.vertices, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     assert_eq!(triangle.triangles, [[0, 1, 2]]);
 
-    let file = file(
-        "cube.gltf",
-        gltf_cube_json(r#"{"mesh":0}"#, r#""uri":"my%20cube.bin","#),
-    );
+    let file = file("cube.gltf", gltf_cube_json(r#"{"mesh":0}"#, r#""uri":"my%20cube.bin","#));
     std::fs::write(file.path.with_file_name("my cube.bin"), gltf_cube_buffer()).unwrap();
     assert_unit_cube(&read_mesh(&file.path).unwrap());
 }
@@ -181,10 +152,7 @@ fn gltf_strips_fans_and_unindexed_triangles() {
     assert_eq!(strip.triangles, [[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4]]);
     assert_eq!(
         (area(&strip), strip.notes),
-        (
-            2.0,
-            vec!["1 primitives are points or lines and were left out.".to_string()]
-        )
+        (2.0, vec!["1 primitives are points or lines and were left out.".to_string()])
     );
     assert_eq!(read(6, 4).triangles, [[0, 1, 2], [0, 2, 3]]);
     assert_eq!(read(4, 6).triangles, [[0, 1, 2], [3, 4, 5]]);

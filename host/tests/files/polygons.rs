@@ -3,14 +3,7 @@
 use crate::samples::*;
 
 /// An L of area 3 in the plane, counter-clockwise.
-const L: [[f32; 2]; 6] = [
-    [0.0, 0.0],
-    [2.0, 0.0],
-    [2.0, 1.0],
-    [1.0, 1.0],
-    [1.0, 2.0],
-    [0.0, 2.0],
-];
+const L: [[f32; 2]; 6] = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
 
 /// An OBJ of the prism of height one over a polygon, its axis along z turned by `turn`.
 fn prism(polygon: &[[f32; 2]], turn: impl Fn([f32; 3]) -> [f32; 3]) -> String {
@@ -23,11 +16,7 @@ fn prism(polygon: &[[f32; 2]], turn: impl Fn([f32; 3]) -> [f32; 3]) -> String {
         }
     }
     let list = |indices: Vec<usize>| indices.iter().map(|i| format!(" {}", i + 1)).collect::<String>();
-    out += &format!(
-        "f{}\nf{}\n",
-        list((0..n).rev().collect()),
-        list((n..2 * n).collect())
-    );
+    out += &format!("f{}\nf{}\n", list((0..n).rev().collect()), list((n..2 * n).collect()));
     for i in 0..n {
         let next = (i + 1) % n;
         out += &format!("f{}\n", list(vec![i, next, next + n, i + n]));
@@ -59,13 +48,7 @@ fn a_concave_prism_is_closed_and_not_inside_out_however_it_lies() {
     assert_prism(&L, |[x, y, z]| [x, c * y - s * z, s * y + c * z], 3.0);
     assert_prism(
         &L,
-        |[x, y, z]| {
-            [
-                0.6 * x - 0.8 * (s * y + c * z),
-                c * y - s * z,
-                0.8 * x + 0.6 * (s * y + c * z),
-            ]
-        },
+        |[x, y, z]| [0.6 * x - 0.8 * (s * y + c * z), c * y - s * z, 0.8 * x + 0.6 * (s * y + c * z)],
         3.0,
     );
 }
@@ -107,11 +90,7 @@ fn a_star_with_many_points_keeps_its_area() {
             [radius * c, radius * s]
         })
         .collect();
-    assert_prism(
-        &star,
-        |[x, y, z]| [z, x, y],
-        100.0 * 0.4 * (std::f64::consts::TAU / 100.0).sin() / 2.0,
-    );
+    assert_prism(&star, |[x, y, z]| [z, x, y], 100.0 * 0.4 * (std::f64::consts::TAU / 100.0).sin() / 2.0);
 }
 
 #[test]

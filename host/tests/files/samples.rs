@@ -20,20 +20,11 @@ pub(crate) const CUBE: [[f32; 3]; 8] = [
 ];
 
 /// Its sides, counter-clockwise from outside.
-pub(crate) const SIDES: [[u32; 4]; 6] = [
-    [0, 2, 3, 1],
-    [4, 5, 7, 6],
-    [0, 1, 5, 4],
-    [2, 6, 7, 3],
-    [0, 4, 6, 2],
-    [1, 3, 7, 5],
-];
+pub(crate) const SIDES: [[u32; 4]; 6] =
+    [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 
 pub(crate) fn cube_triangles() -> Vec<[u32; 3]> {
-    SIDES
-        .iter()
-        .flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]])
-        .collect()
+    SIDES.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect()
 }
 
 /// A file in a directory of its own, gone when dropped.
@@ -46,10 +37,7 @@ pub(crate) fn file(name: &str, content: impl AsRef<[u8]>) -> File {
     let directory = TempDir::new().expect("a temporary directory");
     let path = directory.path().join(name);
     fs::write(&path, content).expect("a temporary file");
-    File {
-        _directory: directory,
-        path,
-    }
+    File { _directory: directory, path }
 }
 
 pub(crate) fn mesh(name: &str, content: impl AsRef<[u8]>) -> Result<MeshFile, FileError> {
@@ -61,9 +49,7 @@ pub(crate) fn cloud(name: &str, content: impl AsRef<[u8]>) -> Result<CloudFile, 
 }
 
 pub(crate) fn area(mesh: &MeshFile) -> f64 {
-    corners(mesh)
-        .map(|[a, b, c]| length(cross(minus(b, a), minus(c, a))) / 2.0)
-        .sum()
+    corners(mesh).map(|[a, b, c]| length(cross(minus(b, a), minus(c, a))) / 2.0).sum()
 }
 
 /// Positive if the triangles are counter-clockwise from outside.
@@ -79,9 +65,7 @@ pub(crate) fn is_closed(mesh: &MeshFile) -> bool {
             *edges.entry((t[k], t[(k + 1) % 3])).or_insert(0) += 1;
         }
     }
-    edges
-        .iter()
-        .all(|((a, b), count)| *count == 1 && edges.contains_key(&(*b, *a)))
+    edges.iter().all(|((a, b), count)| *count == 1 && edges.contains_key(&(*b, *a)))
 }
 
 pub(crate) fn assert_unit_cube(mesh: &MeshFile) {
@@ -96,9 +80,7 @@ pub(crate) fn assert_unit_cube(mesh: &MeshFile) {
 }
 
 fn corners(mesh: &MeshFile) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
-    mesh.triangles
-        .iter()
-        .map(|t| t.map(|i| mesh.vertices[i as usize].map(f64::from)))
+    mesh.triangles.iter().map(|t| t.map(|i| mesh.vertices[i as usize].map(f64::from)))
 }
 
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -106,11 +88,7 @@ fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -123,9 +101,7 @@ fn length(a: [f64; 3]) -> f64 {
 
 pub(crate) fn obj_cube() -> String {
     let vertices = CUBE.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
-    let faces = SIDES
-        .map(|s| format!("f {} {} {} {}\n", s[0] + 1, s[1] + 1, s[2] + 1, s[3] + 1))
-        .concat();
+    let faces = SIDES.map(|s| format!("f {} {} {} {}\n", s[0] + 1, s[1] + 1, s[2] + 1, s[3] + 1)).concat();
     format!("# cube\no cube\n{vertices}{faces}")
 }
 
@@ -133,13 +109,8 @@ pub(crate) fn stl_text_cube() -> String {
     let facets: String = cube_triangles()
         .iter()
         .map(|t| {
-            let vertices = t
-                .map(|i| CUBE[i as usize])
-                .map(|[x, y, z]| format!("      vertex {x} {y} {z}\n"));
-            format!(
-                "  facet normal 0 0 0\n    outer loop\n{}    endloop\n  endfacet\n",
-                vertices.concat()
-            )
+            let vertices = t.map(|i| CUBE[i as usize]).map(|[x, y, z]| format!("      vertex {x} {y} {z}\n"));
+            format!("  facet normal 0 0 0\n    outer loop\n{}    endloop\n  endfacet\n", vertices.concat())
         })
         .collect();
     format!("solid cube\n{facets}endsolid cube\n")
@@ -158,10 +129,7 @@ pub(crate) fn stl_binary(header: &str, triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {
 }
 
 pub(crate) fn stl_binary_cube(header: &str) -> Vec<u8> {
-    let triangles: Vec<_> = cube_triangles()
-        .iter()
-        .map(|t| t.map(|i| CUBE[i as usize]))
-        .collect();
+    let triangles: Vec<_> = cube_triangles().iter().map(|t| t.map(|i| CUBE[i as usize])).collect();
     stl_binary(header, &triangles)
 }
 
@@ -174,25 +142,15 @@ pub(crate) fn ply_header(format: &str, list: &str) -> String {
 
 pub(crate) fn ply_text_cube() -> String {
     let vertices = CUBE.map(|[x, y, z]| format!("{x} {y} {z} 255\n")).concat();
-    let faces = SIDES
-        .map(|s| format!("4 {} {} {} {}\n", s[0], s[1], s[2], s[3]))
-        .concat();
+    let faces = SIDES.map(|s| format!("4 {} {} {} {}\n", s[0], s[1], s[2], s[3])).concat();
     ply_header("ascii", "vertex_indices") + &vertices + &faces
 }
 
 pub(crate) fn ply_binary_cube(big_endian: bool) -> Vec<u8> {
     let word = |bytes: [u8; 4]| {
-        if big_endian {
-            [bytes[3], bytes[2], bytes[1], bytes[0]]
-        } else {
-            bytes
-        }
+        if big_endian { [bytes[3], bytes[2], bytes[1], bytes[0]] } else { bytes }
     };
-    let format = if big_endian {
-        "binary_big_endian"
-    } else {
-        "binary_little_endian"
-    };
+    let format = if big_endian { "binary_big_endian" } else { "binary_little_endian" };
     let mut out = ply_header(format, "vertex_index").into_bytes();
     for vertex in CUBE {
         out.extend(vertex.iter().flat_map(|x| word(x.to_le_bytes())));
@@ -208,10 +166,7 @@ pub(crate) fn ply_binary_cube(big_endian: bool) -> Vec<u8> {
 /// The cube's buffer: 8 positions, then 36 indices of two bytes.
 pub(crate) fn gltf_cube_buffer() -> Vec<u8> {
     let positions = CUBE.as_flattened().iter().flat_map(|x| x.to_le_bytes());
-    let indices = cube_triangles()
-        .into_iter()
-        .flatten()
-        .flat_map(|i| (i as u16).to_le_bytes());
+    let indices = cube_triangles().into_iter().flatten().flat_map(|i| (i as u16).to_le_bytes());
     positions.chain(indices).collect()
 }
 
@@ -266,12 +221,8 @@ pub(crate) fn pcd_header(fields: &str, count: usize, data: &str) -> String {
     )
 }
 
-pub(crate) const PCD_POINTS: [[f32; 3]; 4] = [
-    [1.0, 2.0, 0.0],
-    [f32::NAN, f32::NAN, 0.0],
-    [3.0, 4.0, 0.0],
-    [5.0, 6.0, 0.0],
-];
+pub(crate) const PCD_POINTS: [[f32; 3]; 4] =
+    [[1.0, 2.0, 0.0], [f32::NAN, f32::NAN, 0.0], [3.0, 4.0, 0.0], [5.0, 6.0, 0.0]];
 
 pub(crate) fn pcd_text() -> String {
     pcd_header("x y z", 4, "ascii") + "1 2 0\nnan nan 0\n3 4 0\n5 6 0\n"
@@ -285,12 +236,7 @@ pub(crate) fn pcd_binary() -> Vec<u8> {
 
 /// Column after column, packed by LZF: runs as they are, then one run of zeros told by reference.
 pub(crate) fn pcd_compressed() -> Vec<u8> {
-    let column = |k: usize| {
-        PCD_POINTS
-            .iter()
-            .flat_map(|p| p[k].to_le_bytes())
-            .collect::<Vec<u8>>()
-    };
+    let column = |k: usize| PCD_POINTS.iter().flat_map(|p| p[k].to_le_bytes()).collect::<Vec<u8>>();
     let mut packed = Vec::new();
     for k in [0, 1] {
         packed.push(15);

@@ -25,26 +25,17 @@ pub fn read_cloud(path: &Path) -> Result<CloudFile, FileError> {
 }
 
 pub(super) fn read(source: &Source<'_>) -> Result<CloudFile, FileError> {
-    let mesh_not_cloud = || FileError::MeshNotCloud {
-        path: source.path.into(),
-    };
+    let mesh_not_cloud = || FileError::MeshNotCloud { path: source.path.into() };
     match source.format {
         Format::Pcd => pcd::read(source)?,
         Format::Xyz => xyz::read(source)?,
-        Format::Obj => RawCloud {
-            points: mesh::obj_points(source)?,
-            ..RawCloud::default()
-        },
+        Format::Obj => RawCloud { points: mesh::obj_points(source)?, ..RawCloud::default() },
         Format::Ply => {
             let ply = ply::read(source)?;
             if ply.mesh.face_count() > 0 {
                 return Err(mesh_not_cloud());
             }
-            RawCloud {
-                points: ply.mesh.vertices,
-                normals: ply.normals,
-                ..RawCloud::default()
-            }
+            RawCloud { points: ply.mesh.vertices, normals: ply.normals, ..RawCloud::default() }
         }
         Format::Stl | Format::Gltf => return Err(mesh_not_cloud()),
     }
@@ -63,17 +54,9 @@ struct RawCloud {
 
 impl RawCloud {
     fn finish(self, source: &Source<'_>) -> Result<CloudFile, FileError> {
-        let Self {
-            points,
-            mut normals,
-            missing,
-            mut notes,
-        } = self;
+        let Self { points, mut normals, missing, mut notes } = self;
         if points.is_empty() {
-            return Err(FileError::NoPoints {
-                path: source.path.into(),
-                missing,
-            });
+            return Err(FileError::NoPoints { path: source.path.into(), missing });
         }
         let finite = |p: &[f32; 3]| p.iter().all(|x| x.is_finite());
         if let Some(index) = points.iter().position(|p| !finite(p)) {
@@ -105,11 +88,7 @@ impl RawCloud {
                 }
             }
         }
-        Ok(CloudFile {
-            points,
-            normals,
-            notes,
-        })
+        Ok(CloudFile { points, normals, notes })
     }
 }
 

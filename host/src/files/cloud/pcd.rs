@@ -18,16 +18,10 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
     let columns = Columns::find(source, &meta)?;
     let reader = DynReader::from_bytes(&source.bytes)
         .map_err(|e| source.malformed(Place::Byte(body), e.to_string()))?;
-    let mut cloud = RawCloud {
-        normals: columns.normal.map(|_| Vec::new()),
-        ..RawCloud::default()
-    };
+    let mut cloud = RawCloud { normals: columns.normal.map(|_| Vec::new()), ..RawCloud::default() };
     for (index, record) in reader.enumerate() {
         let record = record.map_err(|e| {
-            source.malformed(
-                Place::Part(format!("point {index} (counted from 0)")),
-                e.to_string(),
-            )
+            source.malformed(Place::Part(format!("point {index} (counted from 0)")), e.to_string())
         })?;
         let three = |columns: [usize; 3]| columns.map(|column| value(&record.0[column]));
         let point = three(columns.point);
@@ -40,27 +34,18 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
         if let (Some(normals), Some(columns)) = (&mut cloud.normals, columns.normal) {
             // And where too few neighbours made a normal.
             let normal = three(columns);
-            normals.push(if normal.iter().any(|x| x.is_nan()) {
-                [0.0; 3]
-            } else {
-                normal
-            });
+            normals.push(if normal.iter().any(|x| x.is_nan()) { [0.0; 3] } else { normal });
         }
     }
     let read = (cloud.points.len() + cloud.missing) as u64;
     if read < meta.num_points {
-        let reason = format!(
-            "the header promises {} points, but there are {read}",
-            meta.num_points
-        );
+        let reason = format!("the header promises {} points, but there are {read}", meta.num_points);
         return Err(source.truncated(Place::Byte(source.bytes.len()), reason));
     }
     let view = &meta.viewpoint;
     if [view.tx, view.ty, view.tz, view.qw, view.qx, view.qy, view.qz] != [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
     {
-        cloud
-            .notes
-            .push("Its VIEWPOINT was not applied: the points are taken as they stand.".into());
+        cloud.notes.push("Its VIEWPOINT was not applied: the points are taken as they stand.".into());
     }
     Ok(cloud)
 }
@@ -77,9 +62,9 @@ fn check_lengths(source: &Source<'_>, meta: &PcdMeta, body: usize) -> Result<(),
         source.truncated(Place::Byte(body), reason)
     };
     let sum = |each: &dyn Fn(u64, u64) -> Option<u64>| {
-        meta.field_defs.iter().try_fold(0_u64, |sum, f| {
-            sum.checked_add(each(f.count, f.kind.byte_size() as u64)?)
-        })
+        meta.field_defs
+            .iter()
+            .try_fold(0_u64, |sum, f| sum.checked_add(each(f.count, f.kind.byte_size() as u64)?))
     };
     let total = match meta.data {
         // At least a digit and a separator each; the last needs none.
@@ -97,26 +82,18 @@ fn check_lengths(source: &Source<'_>, meta: &PcdMeta, body: usize) -> Result<(),
                 .filter(|line| !line.trim_ascii().is_empty())
                 .count() as u64;
             if lines < meta.num_points {
-                let reason = format!(
-                    "the header promises {} points, but {lines} lines follow it",
-                    meta.num_points
-                );
+                let reason =
+                    format!("the header promises {} points, but {lines} lines follow it", meta.num_points);
                 return Err(source.truncated(Place::Whole, reason));
             }
             // The lines are there, but COUNT may ask for more numbers than they can hold.
-            if total > held + 1 {
-                Err(too_few(&format!("at least {total}")))
-            } else {
-                Ok(())
-            }
+            if total > held + 1 { Err(too_few(&format!("at least {total}"))) } else { Ok(()) }
         }
         DataKind::Binary if total > held => Err(too_few(&total.to_string())),
         DataKind::BinaryCompressed => {
             let word = |at: usize| {
                 let bytes = source.bytes.get(body + at..body + at + 4)?;
-                Some(u64::from(u32::from_le_bytes([
-                    bytes[0], bytes[1], bytes[2], bytes[3],
-                ])))
+                Some(u64::from(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]])))
             };
             let (Some(packed), Some(unpacked)) = (word(0), word(4)) else {
                 return Err(too_few("at least 8"));
@@ -148,10 +125,7 @@ impl Columns {
     fn find(source: &Source<'_>, meta: &PcdMeta) -> Result<Self, FileError> {
         // Records come without the padding that `_` stands for.
         let column = |name: &str| {
-            meta.field_defs
-                .iter()
-                .filter(|f| !f.is_padding())
-                .position(|f| f.name == name && f.count == 1)
+            meta.field_defs.iter().filter(|f| !f.is_padding()).position(|f| f.name == name && f.count == 1)
         };
         let columns = |[x, y, z]: [&str; 3]| Some([column(x)?, column(y)?, column(z)?]);
         let lacking = || source.malformed(Place::Part("the header".into()), "FIELDS lacks x, y or z");

@@ -22,11 +22,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
             continue;
         }
         if count == 1 && width == 0 && claimed.is_none() {
-            claimed = Some(
-                text.trim()
-                    .parse::<usize>()
-                    .map_err(|_| malformed(expected(text.trim())))?,
-            );
+            claimed = Some(text.trim().parse::<usize>().map_err(|_| malformed(expected(text.trim())))?);
             continue;
         }
         if width == 0 {
@@ -38,9 +34,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
             width = count;
         }
         if count != width {
-            return Err(malformed(format!(
-                "the points before have {width} numbers, this one has {count}"
-            )));
+            return Err(malformed(format!("the points before have {width} numbers, this one has {count}")));
         }
         for word in words() {
             rows.push(number(word).ok_or_else(|| malformed(expected(word)))?);
@@ -50,28 +44,17 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
     if let Some(claimed) = claimed.filter(|claimed| *claimed > rows.len()) {
         return Err(source.truncated(
             Place::Whole,
-            format!(
-                "it begins with a count of {claimed} points, but has {}",
-                rows.len()
-            ),
+            format!("it begins with a count of {claimed} points, but has {}", rows.len()),
         ));
     }
 
-    let three = |from: usize| {
-        rows.iter()
-            .map(|row| [row[from], row[from + 1], row[from + 2]])
-            .collect::<Vec<_>>()
-    };
-    let mut cloud = RawCloud {
-        points: three(0),
-        ..RawCloud::default()
-    };
+    let three =
+        |from: usize| rows.iter().map(|row| [row[from], row[from + 1], row[from + 2]]).collect::<Vec<_>>();
+    let mut cloud = RawCloud { points: three(0), ..RawCloud::default() };
     if width == 6 && !are_colours(&rows) {
         cloud.normals = Some(three(3));
     } else if width > 3 {
-        cloud.notes.push(format!(
-            "Columns 4 to {width} look like intensity or colour and were ignored."
-        ));
+        cloud.notes.push(format!("Columns 4 to {width} look like intensity or colour and were ignored."));
     }
     if let Some(claimed) = claimed.filter(|claimed| *claimed < rows.len()) {
         cloud.notes.push(format!(
@@ -89,8 +72,5 @@ fn expected(word: &str) -> String {
 /// Whole numbers from 0 to 255, and not all as small as normals are.
 fn are_colours(rows: &[&[f32]]) -> bool {
     let mut values = rows.iter().flat_map(|row| &row[3..6]);
-    values
-        .clone()
-        .all(|x| x.fract() == 0.0 && (0.0..=255.0).contains(x))
-        && values.any(|x| *x > 1.0)
+    values.clone().all(|x| x.fract() == 0.0 && (0.0..=255.0).contains(x)) && values.any(|x| *x > 1.0)
 }

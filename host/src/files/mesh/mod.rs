@@ -37,9 +37,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<MeshFile, FileError> {
         Format::Ply => ply::read(source)?.mesh,
         Format::Gltf => gltf::read(source)?,
         Format::Pcd | Format::Xyz => {
-            return Err(FileError::CloudNotMesh {
-                path: source.path.into(),
-            });
+            return Err(FileError::CloudNotMesh { path: source.path.into() });
         }
     }
     .finish(source)
@@ -50,8 +48,6 @@ pub(super) fn obj_points(source: &Source<'_>) -> Result<Vec<[f32; 3]>, FileError
     let raw = obj::read(source)?;
     match raw.face_count() {
         0 => Ok(raw.vertices),
-        _ => Err(FileError::MeshNotCloud {
-            path: source.path.into(),
-        }),
+        _ => Err(FileError::MeshNotCloud { path: source.path.into() }),
     }
 }

@@ -19,11 +19,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
             carried.push(' ');
             continue;
         }
-        let whole = if carried.is_empty() {
-            line
-        } else {
-            (std::mem::take(&mut carried) + &line).into()
-        };
+        let whole = if carried.is_empty() { line } else { (std::mem::take(&mut carried) + &line).into() };
         statement(&mut mesh, &whole, number)
             .map_err(|reason| source.malformed(Place::Line(number), reason))?;
     }
@@ -41,21 +37,13 @@ fn statement(mesh: &mut RawMesh, line: &str, line_number: usize) -> Result<(), S
                 (Some(word), None) => number(word).ok_or("the weight is not a number")?,
                 _ => 1.0,
             };
-            mesh.vertices.push(if weight == 1.0 {
-                vertex
-            } else {
-                vertex.map(|x| x / weight)
-            });
+            mesh.vertices.push(if weight == 1.0 { vertex } else { vertex.map(|x| x / weight) });
         }
         Some("f") => {
-            let corners: Vec<i64> = words
-                .map(|word| corner(word, mesh.vertices.len()))
-                .collect::<Result<_, _>>()?;
+            let corners: Vec<i64> =
+                words.map(|word| corner(word, mesh.vertices.len())).collect::<Result<_, _>>()?;
             if corners.len() < 3 {
-                return Err(format!(
-                    "a face needs three corners, this one has {}",
-                    corners.len()
-                ));
+                return Err(format!("a face needs three corners, this one has {}", corners.len()));
             }
             mesh.face(corners, line_number);
         }
@@ -69,17 +57,11 @@ fn statement(mesh: &mut RawMesh, line: &str, line_number: usize) -> Result<(), S
 fn corner(word: &str, vertices: usize) -> Result<i64, String> {
     let vertex = word.split('/').next().unwrap_or_default();
     match vertex.parse::<i64>() {
-        Ok(0) | Err(_) => Err(format!(
-            "\"{}\" is not a vertex: vertices are counted from 1",
-            short(word)
-        )),
+        Ok(0) | Err(_) => Err(format!("\"{}\" is not a vertex: vertices are counted from 1", short(word))),
         Ok(index) if index > 0 => Ok(index - 1),
         Ok(index) => match (vertices as i64).checked_add(index) {
             Some(index) if index >= 0 => Ok(index),
-            _ => Err(format!(
-                "\"{}\" counts back past the first of {vertices} vertices",
-                short(word)
-            )),
+            _ => Err(format!("\"{}\" counts back past the first of {vertices} vertices", short(word))),
         },
     }
 }

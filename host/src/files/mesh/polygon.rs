@@ -27,8 +27,7 @@ impl Triangulator {
             }
             _ => {
                 self.corners.clear();
-                self.corners
-                    .extend(ring.iter().map(|&i| vertices[i as usize].map(f64::from)));
+                self.corners.extend(ring.iter().map(|&i| vertices[i as usize].map(f64::from)));
                 self.ears.clear();
                 // Seen from the side that its normal points to, so that earcut's triangles, which always turn
                 // counter-clockwise, turn as the polygon does.
@@ -37,8 +36,7 @@ impl Triangulator {
                 }
                 // Nothing to cut from a polygon without area: a fan keeps its neighbours connected.
                 if self.ears.is_empty() {
-                    self.ears
-                        .extend((2..ring.len() as u32).flat_map(|i| [0, i - 1, i]));
+                    self.ears.extend((2..ring.len() as u32).flat_map(|i| [0, i - 1, i]));
                 }
                 for ear in self.ears.chunks_exact(3) {
                     push(triangles, [0, 1, 2].map(|k| ring[ear[k] as usize]));
@@ -62,18 +60,10 @@ fn quad(p: &[[f64; 3]; 4]) -> [[usize; 3]; 2] {
         let (m, n) = (normal(s.map(|i| p[i])), normal(t.map(|i| p[i])));
         m[0] * n[0] + m[1] * n[1] + m[2] * n[2]
     });
-    if first > 0.0 || first >= second {
-        candidates[0]
-    } else {
-        candidates[1]
-    }
+    if first > 0.0 || first >= second { candidates[0] } else { candidates[1] }
 }
 
 fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-    [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ]
+    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
 }

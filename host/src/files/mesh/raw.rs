@@ -37,10 +37,7 @@ impl RawMesh {
             });
             self.corners.push(corner);
         }
-        self.faces.push(RawFace {
-            end: self.corners.len(),
-            line,
-        });
+        self.faces.push(RawFace { end: self.corners.len(), line });
     }
 
     pub(crate) fn face_count(&self) -> usize {
@@ -62,25 +59,15 @@ impl RawMesh {
             });
         }
         let used = self.used(source)?;
-        let Joined {
-            vertices,
-            new_index,
-            places,
-        } = self.join(&used, source)?;
+        let Joined { vertices, new_index, places } = self.join(&used, source)?;
         let mut notes = self.notes;
         // In an STL every corner is written anew: joining says nothing about the file.
         if source.format != Format::Stl && vertices.len() < places {
-            notes.push(format!(
-                "{places} vertices stand at {} places and were joined.",
-                vertices.len()
-            ));
+            notes.push(format!("{places} vertices stand at {} places and were joined.", vertices.len()));
         }
         let unused = used.iter().filter(|used| !**used).count();
         if unused > 0 {
-            notes.push(format!(
-                "{unused} of {} vertices belong to no face and were left out.",
-                used.len()
-            ));
+            notes.push(format!("{unused} of {} vertices belong to no face and were left out.", used.len()));
         }
 
         let mut triangulator = Triangulator::default();
@@ -89,11 +76,7 @@ impl RawMesh {
         let mut ring = Vec::new();
         for face in &self.faces {
             ring.clear();
-            ring.extend(
-                self.corners[start..face.end]
-                    .iter()
-                    .map(|&corner| new_index[corner as usize]),
-            );
+            ring.extend(self.corners[start..face.end].iter().map(|&corner| new_index[corner as usize]));
             start = face.end;
             ring.dedup();
             while ring.len() > 1 && ring.first() == ring.last() {
@@ -106,10 +89,7 @@ impl RawMesh {
             let before = triangles.len();
             triangulator.append(&vertices, &ring, &mut triangles);
             dropped += usize::from(triangles.len() == before);
-            thin += triangles[before..]
-                .iter()
-                .filter(|t| !has_area(&vertices, t))
-                .count();
+            thin += triangles[before..].iter().filter(|t| !has_area(&vertices, t)).count();
         }
         if dropped > 0 {
             notes.push(format!(
@@ -118,20 +98,13 @@ impl RawMesh {
             ));
         }
         if thin == triangles.len() {
-            return Err(FileError::AllDegenerate {
-                path: source.path.into(),
-                faces: self.faces.len(),
-            });
+            return Err(FileError::AllDegenerate { path: source.path.into(), faces: self.faces.len() });
         }
         if thin > 0 {
             notes.push(format!("{thin} of {} triangles have no area.", triangles.len()));
         }
         let (vertices, triangles) = without_strays(vertices, triangles);
-        Ok(MeshFile {
-            vertices,
-            triangles,
-            notes,
-        })
+        Ok(MeshFile { vertices, triangles, notes })
     }
 
     /// Which vertices the faces use; an index that is out of range is an error.
@@ -176,19 +149,13 @@ impl RawMesh {
             places += 1;
             // Adding zero makes -0 the same place as 0.
             let next = vertices.len() as u32;
-            let new = *by_place
-                .entry(vertex.map(|x| (x + 0.0).to_bits()))
-                .or_insert(next);
+            let new = *by_place.entry(vertex.map(|x| (x + 0.0).to_bits())).or_insert(next);
             if new == next {
                 vertices.push(*vertex);
             }
             new_index[old] = new;
         }
-        Ok(Joined {
-            vertices,
-            new_index,
-            places,
-        })
+        Ok(Joined { vertices, new_index, places })
     }
 }
 
@@ -201,20 +168,14 @@ struct Joined {
 }
 
 fn place(face: usize, line: usize) -> Place {
-    if line > 0 {
-        Place::Line(line)
-    } else {
-        Place::Face(face)
-    }
+    if line > 0 { Place::Line(line) } else { Place::Face(face) }
 }
 
 /// Differences and products of f32 are exact enough in f64 that only a true zero is zero.
 fn has_area(vertices: &[[f32; 3]], triangle: &[u32; 3]) -> bool {
     let [a, b, c] = triangle.map(|i| vertices[i as usize].map(f64::from));
     let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-    [(1, 2), (2, 0), (0, 1)]
-        .iter()
-        .any(|&(i, j)| u[i] * v[j] != u[j] * v[i])
+    [(1, 2), (2, 0), (0, 1)].iter().any(|&(i, j)| u[i] * v[j] != u[j] * v[i])
 }
 
 /// A dropped face can leave vertices behind that nothing uses.

@@ -14,15 +14,9 @@ const TRIANGLE: usize = 50;
 pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
     let bytes = &source.bytes;
     // Only the length tells for sure: binary files with a header that begins with "solid" are common.
-    let count = bytes
-        .get(80..HEADER)
-        .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
+    let count = bytes.get(80..HEADER).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
     let fits = count.is_some_and(|count| bytes.len() == HEADER + TRIANGLE * count);
-    if !fits && is_text(bytes) {
-        text(source)
-    } else {
-        binary(source, count)
-    }
+    if !fits && is_text(bytes) { text(source) } else { binary(source, count) }
 }
 
 fn is_text(bytes: &[u8]) -> bool {
@@ -48,18 +42,13 @@ fn binary(source: &Source<'_>, count: Option<usize>) -> Result<RawMesh, FileErro
     for triangle in source.bytes[HEADER..wanted].chunks_exact(TRIANGLE) {
         let first = mesh.vertices.len() as i64;
         // Twelve bytes of normal, three vertices, two bytes for the maker's own use.
-        mesh.vertices
-            .extend(triangle[12..48].chunks_exact(12).map(|vertex| {
-                [0, 4, 8]
-                    .map(|k| f32::from_le_bytes([vertex[k], vertex[k + 1], vertex[k + 2], vertex[k + 3]]))
-            }));
+        mesh.vertices.extend(triangle[12..48].chunks_exact(12).map(|vertex| {
+            [0, 4, 8].map(|k| f32::from_le_bytes([vertex[k], vertex[k + 1], vertex[k + 2], vertex[k + 3]]))
+        }));
         mesh.face(first..first + 3, 0);
     }
     if wanted < length {
-        mesh.notes.push(format!(
-            "{} bytes after the last triangle were ignored.",
-            length - wanted
-        ));
+        mesh.notes.push(format!("{} bytes after the last triangle were ignored.", length - wanted));
     }
     Ok(mesh)
 }
@@ -85,9 +74,7 @@ fn text(source: &Source<'_>) -> Result<RawMesh, FileError> {
                 in_facet = false;
                 let corners = mesh.vertices.len() - facet_start;
                 if corners != 3 {
-                    return Err(malformed(format!(
-                        "a facet needs three vertices, this one has {corners}"
-                    )));
+                    return Err(malformed(format!("a facet needs three vertices, this one has {corners}")));
                 }
                 mesh.face(facet_start as i64..mesh.vertices.len() as i64, number);
             }

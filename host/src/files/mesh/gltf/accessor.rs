@@ -9,9 +9,7 @@ pub(super) fn positions(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<
         return Err("its POSITION is not three floats".into());
     }
     let float = |b: &[u8], at: usize| f32::from_le_bytes([b[at], b[at + 1], b[at + 2], b[at + 3]]);
-    Ok(items(accessor, buffers, 12)?
-        .map(|b| [0, 4, 8].map(|at| float(b, at)))
-        .collect())
+    Ok(items(accessor, buffers, 12)?.map(|b| [0, 4, 8].map(|at| float(b, at))).collect())
 }
 
 /// The indices of a primitive.
@@ -21,12 +19,12 @@ pub(super) fn indices(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Ve
     }
     Ok(match accessor.data_type() {
         DataType::U8 => items(accessor, buffers, 1)?.map(|b| b[0].into()).collect(),
-        DataType::U16 => items(accessor, buffers, 2)?
-            .map(|b| u16::from_le_bytes([b[0], b[1]]).into())
-            .collect(),
-        DataType::U32 => items(accessor, buffers, 4)?
-            .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-            .collect(),
+        DataType::U16 => {
+            items(accessor, buffers, 2)?.map(|b| u16::from_le_bytes([b[0], b[1]]).into()).collect()
+        }
+        DataType::U32 => {
+            items(accessor, buffers, 4)?.map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+        }
         _ => return Err("its indices are not whole numbers without sign".into()),
     })
 }
@@ -41,14 +39,10 @@ fn items<'a>(
     if accessor.sparse().is_some() {
         return Err(format!("{name} is sparse"));
     }
-    let view = accessor
-        .view()
-        .ok_or_else(|| format!("{name} has no buffer view; it may be compressed"))?;
+    let view = accessor.view().ok_or_else(|| format!("{name} has no buffer view; it may be compressed"))?;
     let stride = view.stride().unwrap_or(size);
     if stride < size {
-        return Err(format!(
-            "{name} has items of {size} bytes only {stride} bytes apart"
-        ));
+        return Err(format!("{name} has items of {size} bytes only {stride} bytes apart"));
     }
     // Where the last item ends, within the view.
     let end = match accessor.count() {
@@ -57,13 +51,9 @@ fn items<'a>(
             .checked_mul(stride)
             .and_then(|at| at.checked_add(size)?.checked_add(accessor.offset())),
     };
-    let bytes = buffers
-        .get(view.buffer().index())
-        .zip(view.offset().checked_add(view.length()));
+    let bytes = buffers.get(view.buffer().index()).zip(view.offset().checked_add(view.length()));
     let bytes = bytes.and_then(|(buffer, view_end)| buffer.get(view.offset()..view_end));
-    let bytes = bytes
-        .zip(end)
-        .and_then(|(bytes, end)| bytes.get(accessor.offset().min(end)..end));
+    let bytes = bytes.zip(end).and_then(|(bytes, end)| bytes.get(accessor.offset().min(end)..end));
     let bytes = bytes.ok_or_else(|| format!("{name} reaches past the end of its buffer"))?;
     // The last item may be shorter than a stride.
     Ok(bytes.chunks(stride).map(move |item| &item[..size]))

@@ -22,18 +22,12 @@ pub(super) fn read(
     for buffer in document.buffers() {
         let place = || Place::Part(format!("buffer {}", buffer.index()));
         let bytes = match buffer.source() {
-            Location::Bin => blob
-                .take()
-                .ok_or("it has no URI and the file has no binary part".to_string()),
+            Location::Bin => blob.take().ok_or("it has no URI and the file has no binary part".to_string()),
             Location::Uri(uri) => from_uri(source, uri),
         }
         .map_err(|reason| source.malformed(place(), reason))?;
         if bytes.len() < buffer.length() {
-            let reason = format!(
-                "it should have {} bytes, but has {}",
-                buffer.length(),
-                bytes.len()
-            );
+            let reason = format!("it should have {} bytes, but has {}", buffer.length(), bytes.len());
             return Err(source.truncated(place(), reason));
         }
         buffers.push(bytes);
@@ -47,24 +41,16 @@ fn from_uri(source: &Source<'_>, uri: &str) -> Result<Vec<u8>, String> {
         if !kind.ends_with(";base64") {
             return Err("its data URI is not base64".into());
         }
-        return STANDARD
-            .decode(payload)
-            .map_err(|e| format!("its data URI is not base64: {e}"));
+        return STANDARD.decode(payload).map_err(|e| format!("its data URI is not base64: {e}"));
     }
     if uri.contains("://") {
-        return Err(format!(
-            "it lies at {uri}, and nothing is fetched from the network"
-        ));
+        return Err(format!("it lies at {uri}, and nothing is fetched from the network"));
     }
-    let name = percent_decode_str(uri)
-        .decode_utf8()
-        .map_err(|_| format!("its file name {uri} is not UTF-8"))?;
+    let name =
+        percent_decode_str(uri).decode_utf8().map_err(|_| format!("its file name {uri} is not UTF-8"))?;
     let path = source.path.parent().unwrap_or(source.path).join(name.as_ref());
     if !path.is_file() {
-        return Err(format!(
-            "its file {} is missing: keep it beside the glTF",
-            path.display()
-        ));
+        return Err(format!("its file {} is missing: keep it beside the glTF", path.display()));
     }
     fs::read(&path).map_err(|e| format!("its file {} cannot be read: {e}", path.display()))
 }

@@ -22,34 +22,24 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
     let malformed = |reason: String| source.malformed(Place::Whole, reason);
     // The crate subtracts the header's own 12 bytes from the length that it tells, unasked.
     if source.bytes.starts_with(b"glTF") {
-        match source
-            .bytes
-            .get(8..12)
-            .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize)
-        {
+        match source.bytes.get(8..12).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize) {
             Some(length) if length < 12 => {
                 return Err(malformed(format!("a GLB cannot be {length} bytes long")));
             }
             Some(length) if length <= source.bytes.len() => {}
             Some(length) => {
-                let reason = format!(
-                    "the header promises {length} bytes, but there are {}",
-                    source.bytes.len()
-                );
+                let reason =
+                    format!("the header promises {length} bytes, but there are {}", source.bytes.len());
                 return Err(source.truncated(Place::Byte(source.bytes.len()), reason));
             }
             None => {
-                return Err(source.truncated(
-                    Place::Byte(source.bytes.len()),
-                    "a GLB begins with 12 bytes of header",
-                ));
+                return Err(
+                    source.truncated(Place::Byte(source.bytes.len()), "a GLB begins with 12 bytes of header")
+                );
             }
         }
     }
-    let bytes = source
-        .bytes
-        .strip_prefix(b"\xef\xbb\xbf")
-        .unwrap_or(&source.bytes);
+    let bytes = source.bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&source.bytes);
     let gltf::Gltf { document, blob } =
         gltf::Gltf::from_slice_without_validation(bytes).map_err(|e| malformed(reason(&e)))?;
     let document = validate(document).map_err(malformed)?;
@@ -118,16 +108,10 @@ impl Scene<'_> {
             is_child[child.index()] = true;
         }
         let mut pending: Vec<(Node<'_>, Matrix4<f64>)> = match document.scenes().len() {
-            0 => document
-                .nodes()
-                .filter(|n| !is_child[n.index()])
-                .map(|n| (n, Matrix4::identity()))
-                .collect(),
-            _ => document
-                .scenes()
-                .flat_map(|s| s.nodes())
-                .map(|n| (n, Matrix4::identity()))
-                .collect(),
+            0 => {
+                document.nodes().filter(|n| !is_child[n.index()]).map(|n| (n, Matrix4::identity())).collect()
+            }
+            _ => document.scenes().flat_map(|s| s.nodes()).map(|n| (n, Matrix4::identity())).collect(),
         };
         pending.reverse();
         // By the rules a node has one parent. Where a file breaks them, this also ends a circle.
@@ -159,10 +143,7 @@ impl Scene<'_> {
         place: &str,
     ) -> Result<(), FileError> {
         let malformed = |reason: String| self.source.malformed(Place::Part(place.into()), reason);
-        if !matches!(
-            primitive.mode(),
-            Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
-        ) {
+        if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
             self.others += 1;
             return Ok(());
         }
@@ -184,10 +165,7 @@ impl Scene<'_> {
             });
         }
         if self.mesh.size() + positions.len() + 3 * indices.len() > MOST {
-            return Err(FileError::TooLarge {
-                path: self.source.path.into(),
-                most: MOST,
-            });
+            return Err(FileError::TooLarge { path: self.source.path.into(), most: MOST });
         }
 
         let first = self.mesh.vertices.len() as i64;
@@ -204,11 +182,7 @@ impl Scene<'_> {
         match primitive.mode() {
             Mode::TriangleStrip => {
                 for (i, w) in indices.windows(3).enumerate() {
-                    add(if i % 2 == 0 {
-                        [w[0], w[1], w[2]]
-                    } else {
-                        [w[0], w[2], w[1]]
-                    });
+                    add(if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] });
                 }
             }
             Mode::TriangleFan => {
@@ -227,16 +201,14 @@ impl Scene<'_> {
 
     fn finish(mut self) -> RawMesh {
         if self.others > 0 {
-            self.mesh.notes.push(format!(
-                "{} primitives are points or lines and were left out.",
-                self.others
-            ));
+            self.mesh
+                .notes
+                .push(format!("{} primitives are points or lines and were left out.", self.others));
         }
         if self.skinned > 0 {
-            self.mesh.notes.push(format!(
-                "{} meshes have a skeleton and were read as if at rest.",
-                self.skinned
-            ));
+            self.mesh
+                .notes
+                .push(format!("{} meshes have a skeleton and were read as if at rest.", self.skinned));
         }
         self.mesh
     }

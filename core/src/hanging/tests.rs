@@ -1,0 +1,380 @@
+//! The whole method on shapes with known answers, and what must not change the answer.
+
+use super::*;
+use crate::geometry::{Cloud, Pose};
+use crate::memory::Limits;
+use crate::test_shapes::{self, Shape};
+use crate::{Monitor, Params, Stop};
+use nalgebra::{Translation3, UnitQuaternion};
+
+fn fast() -> Params {
+    Params { samples: 3000, ..Params::default() }
+}
+
+struct Scene {
+    object: Shape,
+    points: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+}
+
+impl Scene {
+    /// A ring of 30 mm on a horizontal peg of 5 mm, turned by `yaw`.
+    fn ring_on_peg(yaw: f32) -> Self {
+        let object = test_shapes::torus(0.030, 0.004, 72, 24);
+        let along = Vector::new(yaw.cos(), yaw.sin(), 0.0) * 0.05;
+        let middle = Point::new(0.3, -0.2, 0.5);
+        let (points, normals) = test_shapes::peg(middle - along, middle + along, 0.005, 0.001);
+        Self { object, points, normals }
+    }
+
+    /// A handle with a bar: nothing about it is symmetric.
+    fn key_on_peg() -> Self {
+        let mut scene = Self::ring_on_peg(0.0);
+        let bar = test_shapes::ball(1.0, 24, 24)
+            .map(|p| Point::new(0.005 * p.x, 0.04 * p.y, 0.003 * p.z) + Vector::new(0.004, 0.07, 0.001));
+        scene.object.append(&bar, Vector::zeros());
+        scene
+    }
+
+    /// Dust around the peg that no pose can avoid, too thin to be part of a slice, and facing sideways.
+    fn dusty_key_on_peg() -> Self {
+        let mut scene = Self::key_on_peg();
+        for i in 0..30 * 30 * 30 {
+            let offset = [i % 30, i / 30 % 30, i / 900].map(|k| k as f32 * 0.007 - 0.1);
+            if offset[1].hypot(offset[2]) > 0.012 {
+                scene.points.push([0.3 + offset[0], -0.2 + offset[1], 0.5 + offset[2]]);
+                scene.normals.push([1.0, 0.0, 0.0]);
+            }
+        }
+        scene
+    }
+
+    fn limits(&self, params: &Params) -> Limits {
+        Limits {
+            vertices: self.object.vertices.len(),
+            triangles: self.object.triangles.len(),
+            samples: params.samples,
+            points: self.points.len(),
+        }
+    }
+
+    fn cloud(&self) -> Cloud<'_> {
+        Cloud::new(&self.points, Some(&self.normals)).unwrap()
+    }
+
+    fn analyse(&self, params: &Params, monitor: &Monitor, check: impl FnOnce(&Object, &Supporter)) {
+        let limits = self.limits(params);
+        let (mut object, mut supporter) =
+            (vec![0; Object::bytes(&limits)], vec![0; Supporter::bytes(&limits)]);
+        let object = Object::analyze(&self.object.mesh(), params, &mut object, monitor).unwrap();
+        let supporter = Supporter::analyze(&self.cloud(), params, &mut supporter, monitor).unwrap();
+        check(&object, &supporter);
+    }
+
+    fn predict(&self, params: &Params) -> (Vec<HangingPose>, Option<Stage>) {
+        let mut poses = [HangingPose::default(); 1000];
+        let mut result = None;
+        self.analyse(params, &Monitor::new(), |object, supporter| {
+            let prediction = predict(object, supporter, params, &mut poses, &Monitor::new()).unwrap();
+            assert_eq!(prediction.stopped, None);
+            let stage = prediction.rejection.map(|rejection| rejection.stage);
+            result = Some((prediction.poses.to_vec(), stage));
+        });
+        result.unwrap()
+    }
+}
+
+fn degrees_between_lines(a: &Vector, b: &Vector) -> f32 {
+    a.cross(b).norm().atan2(a.dot(b).abs()).to_degrees()
+}
+
+/// How far apart two poses put an object, by the farther of two of its points, metres.
+fn gap(a: &Pose, b: &Pose, probes: [Point; 2]) -> f32 {
+    probes.iter().map(|p| (a * p - b * p).norm()).fold(0.0, f32::max)
+}
+
+#[test]
+fn a_torus_gives_its_hole() {
+    let scene = Scene::ring_on_peg(0.0);
+    for params in [fast(), Params::paper()] {
+        scene.analyse(&params, &Monitor::new(), |object, _| {
+            assert!(!object.sites().is_empty());
+            for site in object.sites() {
+                // The hole's radius is 26 mm. The best of ten steps across it is an eighteenth of its diameter
+                // off the centre, which makes its free space that much smaller; samples are 1 mm apart.
+                let step = 0.052 / 18.0;
+                assert!((site.position.coords.norm() - step).abs() < 1e-3, "{site:?}");
+                assert!((site.free_space_radius - (0.026 - step)).abs() < 1e-3, "{site:?}");
+                assert!(degrees_between_lines(&site.hanging_direction, &Vector::z()) < 4.0, "{site:?}");
+                assert!(site.encircled == 1.0 && site.encircled_above == 1.0);
+            }
+        });
+    }
+}
+
+#[test]
+fn a_straight_peg_gives_its_axis() {
+    for yaw in [0.0_f32, 0.3, 1.0, 2.2] {
+        let scene = Scene::ring_on_peg(yaw);
+        scene.analyse(&fast(), &Monitor::new(), |_, supporter| {
+            assert!(supporter.sites().len() > 3);
+            for site in supporter.sites() {
+                // Slices are tried every 9 degrees, and next to the right one may look as thin by chance.
+                let axis = Vector::new(yaw.cos(), yaw.sin(), 0.0);
+                assert!(degrees_between_lines(&site.hanging_direction, &axis) < 9.0, "{yaw}: {site:?}");
+                let offset = site.position - Point::new(0.3, -0.2, 0.5);
+                assert!(offset.cross(&axis).norm() < 5e-4, "off the axis: {site:?}");
+                // The slice is 4 mm thick and, if askew, a little longer.
+                let radius = (0.005_f32.powi(2) + 0.003_f32.powi(2)).sqrt();
+                assert!(site.support_radius <= radius + 1e-4 && site.support_radius > 0.005, "{site:?}");
+                // Askew, the hull would be left through the side.
+                if yaw == 0.0 {
+                    let along = offset.dot(&site.hanging_direction);
+                    let [d1, d2] = site.boundary_distances;
+                    assert!((d1 - (0.05 - along)).abs() < 1e-4, "{site:?}");
+                    assert!((d2 - (0.05 + along)).abs() < 1e-4, "{site:?}");
+                }
+            }
+        });
+    }
+}
+
+#[test]
+fn a_ring_hangs_on_the_peg_with_its_centre_below() {
+    let (poses, stage) = Scene::ring_on_peg(0.4).predict(&fast());
+    assert_eq!(stage, None);
+    for pose in poses {
+        let axis = pose.pose * Vector::z();
+        let peg = Vector::new(0.4_f32.cos(), 0.4_f32.sin(), 0.0);
+        assert!(degrees_between_lines(&axis, &peg) < 9.0, "{pose:?}");
+        assert!((pose.pose * Point::origin()).z < 0.5, "{pose:?}");
+        assert_eq!(pose.cost.collision, 0);
+        // Middle of the peg first.
+        assert!(pose.cost.boundary >= 0.5 && pose.cost.boundary <= 1.0);
+    }
+}
+
+#[test]
+fn each_stage_rejects_what_it_should() {
+    let ring = || Scene::ring_on_peg(0.0);
+    let ball = Scene { object: test_shapes::ball(0.04, 32, 64), ..ring() };
+    assert_eq!(ball.predict(&fast()), (vec![], Some(Stage::NoContactPoints)));
+
+    // A ball rattling in a shell that leaves it 0.4 mm.
+    let mut rattle = test_shapes::ball(0.0102, 32, 64);
+    rattle.append(&test_shapes::ball(0.0100, 32, 64).inside_out(), Vector::zeros());
+    rattle.append(&test_shapes::ball(0.0096, 32, 64), Vector::zeros());
+    let rattle = Scene { object: rattle, ..ring() };
+    let dense = Params { samples: 10_000, ..fast() };
+    assert_eq!(rattle.predict(&dense), (vec![], Some(Stage::NoFreeSpace)));
+
+    // A gutter's bottom faces its centre of mass, but the other side is open.
+    let bend = |p: Point| Point::new(p.x, 0.03 * (30.0 * p.y).sin(), -0.03 * (30.0 * p.y).cos());
+    let flat = test_shapes::grid(0.1, 40).map(|p| p - Vector::new(0.05, 0.05, 0.0));
+    let gutter = Scene { object: flat.map(bend), ..ring() };
+    assert_eq!(gutter.predict(&fast()), (vec![], Some(Stage::NotEncircled)));
+
+    let wall = test_shapes::grid(0.2, 60).map(|p| Point::new(0.0, p.x, p.y));
+    let wall = Scene { normals: vec![[1.0, 0.0, 0.0]; wall.vertices.len()], points: wall.vertices, ..ring() };
+    assert_eq!(wall.predict(&fast()), (vec![], Some(Stage::NoSupport)));
+
+    let (points, normals) = test_shapes::peg(Point::origin(), Point::new(0.1, 0.0, 0.0), 0.026, 0.001);
+    let thick = Scene { points, normals, ..ring() };
+    assert_eq!(thick.predict(&fast()), (vec![], Some(Stage::TooThick)));
+
+    let dusty = Scene { object: ring().object, ..Scene::dusty_key_on_peg() };
+    let strict = Params { max_collision: 0.0, ..fast() };
+    assert_eq!(dusty.predict(&strict), (vec![], Some(Stage::AllCollide)));
+    assert!(!dusty.predict(&Params::paper()).0.is_empty(), "the paper keeps poses that collide");
+}
+
+#[test]
+fn the_object_may_lie_in_any_frame() {
+    let scene = Scene::key_on_peg();
+    // A ring has many equally good sites, of which merging would keep any one.
+    let params = Params { similar_radius: 0.0, ..fast() };
+    let (poses, _) = scene.predict(&params);
+    let probes = [Point::origin(), Point::new(0.004, 0.11, 0.001)];
+    for (index, angles) in [(0.5, 0.0, 0.0), (1.0, -2.0, 0.3), (-0.4, 0.9, 3.0)].into_iter().enumerate() {
+        let turn = UnitQuaternion::from_euler_angles(angles.0, angles.1, angles.2);
+        let motion = Pose::from_parts(Translation3::new(0.2, index as f32, -0.1), turn);
+        let moved = Scene { object: scene.object.map(|p| motion * p), ..Scene::key_on_peg() };
+        let (moved, _) = moved.predict(&params);
+        // Rounding moves the samples a little, and with them the sites and the order of poses of like cost. The
+        // ten best of either must be among the other's, within the 4 degrees between directions, which are
+        // 8 mm at the far probe, and the 2 mm between samples.
+        let back: Vec<Pose> = moved.iter().map(|m| m.pose * motion).collect();
+        let straight: Vec<Pose> = poses.iter().map(|p| p.pose).collect();
+        for (some, others) in [(&straight, &back), (&back, &straight)] {
+            for pose in &some[..10] {
+                let closest =
+                    others.iter().map(|other| gap(pose, other, probes)).fold(f32::INFINITY, f32::min);
+                assert!(closest < 0.010, "{index}: {closest}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_turn_of_the_supporter_turns_the_answer() {
+    let scene = Scene::key_on_peg();
+    let (poses, _) = scene.predict(&fast());
+    let probes = [Point::origin(), Point::new(0.004, 0.11, 0.001)];
+    // By a multiple of the 9 degrees between slices the answer turns with it, but for what rounding makes of
+    // slices that are equally thin; in between it is off by up to half of that.
+    for (steps, tolerance) in [(5.0, 0.005), (11.0, 0.005), (-4.0, 0.005), (7.5, 0.012)] {
+        let turn = UnitQuaternion::from_axis_angle(&Vector::z_axis(), steps * 9_f32.to_radians());
+        let rotate = |v: &[f32; 3]| -> [f32; 3] { (turn * Vector::from(*v)).into() };
+        let turned = Scene {
+            points: scene.points.iter().map(rotate).collect(),
+            normals: scene.normals.iter().map(rotate).collect(),
+            object: scene.object.clone(),
+        };
+        let (turned, _) = turned.predict(&fast());
+        let closest = turned.iter().map(|t| gap(&(turn * poses[0].pose), &t.pose, probes));
+        let closest = closest.fold(f32::INFINITY, f32::min);
+        assert!(closest < tolerance, "{steps}: {closest}");
+    }
+}
+
+#[test]
+fn gravity_may_point_anywhere() {
+    let scene = Scene::key_on_peg();
+    let (poses, _) = scene.predict(&fast());
+    let probes = [Point::origin(), Point::new(0.004, 0.11, 0.001)];
+    // The whole world turned about x by a right angle: what was down is now +y.
+    let turn = UnitQuaternion::from_axis_angle(&Vector::x_axis(), core::f32::consts::FRAC_PI_2);
+    let rotate = |v: &[f32; 3]| -> [f32; 3] { (turn * Vector::from(*v)).into() };
+    let turned = Scene {
+        points: scene.points.iter().map(rotate).collect(),
+        normals: scene.normals.iter().map(rotate).collect(),
+        object: scene.object.clone(),
+    };
+    let (turned, _) = turned.predict(&Params { gravity: [0.0, 9.81, 0.0], ..fast() });
+    let closest = turned.iter().map(|t| gap(&(turn * poses[0].pose), &t.pose, probes));
+    assert!(closest.fold(f32::INFINITY, f32::min) < 2e-3);
+}
+
+#[test]
+fn the_same_bytes_twice() {
+    let scene = Scene::key_on_peg();
+    let bits = |poses: &[HangingPose]| -> Vec<u32> {
+        poses
+            .iter()
+            .flat_map(|p| p.pose.to_homogeneous().iter().chain([&p.cost.total]).copied().collect::<Vec<_>>())
+            .map(f32::to_bits)
+            .collect()
+    };
+    let (first, _) = scene.predict(&fast());
+    assert!(!first.is_empty());
+    assert_eq!(bits(&first), bits(&scene.predict(&fast()).0));
+    assert_ne!(bits(&first), bits(&scene.predict(&Params { seed: 1, ..fast() }).0));
+}
+
+#[test]
+fn memory_of_every_size_gives_the_error_or_the_model() {
+    let scene = Scene::ring_on_peg(0.0);
+    let params = Params { samples: 1000, min_cluster_points: 5, ..Params::default() };
+    let monitor = Monitor::new();
+    let (mesh, cloud, limits) = (scene.object.mesh(), scene.cloud(), scene.limits(&params));
+    let needed = [Object::bytes(&limits), Supporter::bytes(&limits)];
+    let mut memory = vec![0xFF; needed[0].max(needed[1]) + 64];
+    for size in 0..needed[0] {
+        let error = Object::analyze(&mesh, &params, &mut memory[..size], &monitor).err();
+        assert_eq!(error, Some(AnalysisError::OutOfMemory(OutOfMemory { needed: needed[0], given: size })));
+    }
+    for size in 0..needed[1] {
+        let error = Supporter::analyze(&cloud, &params, &mut memory[..size], &monitor).err();
+        assert_eq!(error, Some(AnalysisError::OutOfMemory(OutOfMemory { needed: needed[1], given: size })));
+    }
+    // Exactly enough is enough wherever it begins, and what was in it does not matter.
+    let mut sites = Vec::new();
+    for offset in 0..17 {
+        memory.fill(offset as u8);
+        let object = Object::analyze(&mesh, &params, &mut memory[offset..offset + needed[0]], &monitor);
+        sites.push(object.unwrap().sites().to_vec());
+        memory.fill(!offset as u8);
+        Supporter::analyze(&cloud, &params, &mut memory[offset..offset + needed[1]], &monitor).unwrap();
+    }
+    assert!(!sites[0].is_empty() && sites.iter().all(|s| *s == sites[0]));
+}
+
+#[test]
+fn a_work_limit_gives_the_best_so_far_and_says_so() {
+    let scene = Scene::key_on_peg();
+    let unlimited = Monitor::new();
+    scene.analyse(&fast(), &unlimited, |object, supporter| {
+        let mut all = [HangingPose::default(); 100];
+        let full = predict(object, supporter, &fast(), &mut all, &unlimited).unwrap();
+        assert_eq!(full.stopped, None);
+        let mut some = [HangingPose::default(); 100];
+        let limited = Monitor::with_work_limit(full.work.distance_queries / 2);
+        let part = predict(object, supporter, &fast(), &mut some, &limited).unwrap();
+        assert_eq!((part.stopped, part.rejection), (Some(Stop::WorkLimit), None));
+        assert!(!part.poses.is_empty() && part.poses.len() < full.poses.len());
+        assert!(part.poses.iter().all(|pose| full.poses.contains(pose)));
+        let mut again = [HangingPose::default(); 100];
+        assert_eq!(predict(object, supporter, &fast(), &mut again, &limited).unwrap().poses, part.poses);
+
+        unlimited.cancel();
+        let cancelled = predict(object, supporter, &fast(), &mut some, &unlimited).unwrap();
+        assert_eq!((cancelled.stopped, cancelled.poses.len()), (Some(Stop::Cancelled), 0));
+    });
+    // A limited analysis says so too, and so does every prediction from it.
+    let limited = Monitor::with_work_limit(4000);
+    scene.analyse(&fast(), &limited, |object, supporter| {
+        assert_eq!(object.stopped(), Some(Stop::WorkLimit));
+        let mut poses = [HangingPose::default(); 5];
+        let prediction = predict(object, supporter, &fast(), &mut poses, &Monitor::new()).unwrap();
+        assert_eq!((prediction.stopped, prediction.rejection), (Some(Stop::WorkLimit), None));
+    });
+    let limits = scene.limits(&fast());
+    let mut memory = vec![0; Object::bytes(&limits)];
+    unlimited.cancel();
+    let cancelled = Object::analyze(&scene.object.mesh(), &fast(), &mut memory, &unlimited);
+    assert_eq!(cancelled.err(), Some(AnalysisError::Cancelled));
+}
+
+#[test]
+fn fewer_places_for_poses_give_the_first_of_more() {
+    let scene = Scene::dusty_key_on_peg();
+    let params = Params { max_collision: 1.0, similar_radius: 0.0, radius_ratio: 0.0, ..fast() };
+    scene.analyse(&params, &Monitor::new(), |object, supporter| {
+        let mut all = [HangingPose::default(); 1000];
+        let all = predict(object, supporter, &params, &mut all, &Monitor::new()).unwrap().poses;
+        assert!(all.len() > 20 && all.iter().any(|pose| pose.cost.collision > 0));
+        for count in [0, 1, 3, 20] {
+            let mut some = vec![HangingPose::default(); count];
+            let some = predict(object, supporter, &params, &mut some, &Monitor::new()).unwrap();
+            assert_eq!(some.poses, &all[..count]);
+        }
+        // Collisions by brute force.
+        for pose in all.iter().step_by(7) {
+            let inverse = pose.pose.inverse();
+            let inside = supporter.points().points().iter();
+            let inside = inside.filter(|p| object.surface().signed_distance(&(inverse * *p)) < 0.0).count();
+            assert_eq!(inside as u32, pose.cost.collision);
+        }
+    });
+}
+
+#[test]
+fn broken_normals_are_mended_and_counted() {
+    let mut scene = Scene::ring_on_peg(0.0);
+    let (expected, _) = scene.predict(&fast());
+    for (index, normal) in scene.normals.iter_mut().enumerate() {
+        match index % 50 {
+            0 => *normal = [0.0; 3],
+            1..10 => *normal = normal.map(|x| 3.0 * x),
+            _ => {}
+        }
+    }
+    let count = scene.points.len();
+    scene.analyse(&fast(), &Monitor::new(), |_, supporter| {
+        assert_eq!(supporter.normals().estimated, count.div_ceil(50));
+        assert!(supporter.normals().renormalised.abs_diff(count * 9 / 50) < 10);
+    });
+    let probes = [Point::new(0.03, 0.0, 0.0), Point::new(0.0, 0.03, 0.0)];
+    let (mended, _) = scene.predict(&fast());
+    assert!(mended.iter().any(|m| gap(&m.pose, &expected[0].pose, probes) < 0.01));
+}
