@@ -19,7 +19,7 @@ impl Aabb {
     };
 
     /// The smallest box around `points`.
-    pub(crate) fn of<'a>(points: impl IntoIterator<Item = &'a Point>) -> Self {
+    pub fn of<'a>(points: impl IntoIterator<Item = &'a Point>) -> Self {
         points.into_iter().fold(Self::EMPTY, |aabb, point| aabb.grow(point))
     }
 

@@ -5,6 +5,7 @@ use crate::memory::{Arena, OutOfMemory, array_bytes};
 
 /// What a mesh weighs, up to its density.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct MassProperties {
     /// Surface area, m².
     pub area: f32,

@@ -5,6 +5,7 @@ use crate::params::Params;
 
 /// The costs of a pose; less is better.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Cost {
     /// `S_c`: points of the supporter inside the object, eq. (8).
     pub collision: u32,

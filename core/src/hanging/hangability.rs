@@ -10,6 +10,7 @@ use bytemuck::{Pod, Zeroable};
 
 /// A place on an object into which a supporter can reach, in object coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[repr(C)]
 pub struct HangingSite {
     /// `c_h`: centre of the free space, metres.
@@ -32,6 +33,7 @@ pub struct HangingSite {
 
 /// What was left after each step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct HangabilityCounts {
     /// Samples whose normal leans towards the centre of mass, eq. (3).
     pub contact_points: usize,

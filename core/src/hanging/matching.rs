@@ -44,6 +44,7 @@ impl Default for HangingPose {
 
 /// What was left after each step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct MatchingCounts {
     /// Pairs of an object site and a support site.
     pub pairs: usize,

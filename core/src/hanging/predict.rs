@@ -33,6 +33,7 @@ pub struct Rejection {
 
 /// What was left after each step of the method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Counts {
     /// Of the object, section II-B.
     pub hangability: HangabilityCounts,
@@ -44,6 +45,7 @@ pub struct Counts {
 
 /// The step of the method that left nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum Stage {
     /// Nowhere does the object's surface face its centre of mass, or only in specks: eqs. (3) and (4).
     NoContactPoints,

@@ -10,6 +10,7 @@ use bytemuck::{Pod, Zeroable};
 
 /// A place on a supporter that something can hang on, in supporter coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[repr(C)]
 pub struct SupportSite {
     /// `c_s`: centre of the cross-section, metres.
@@ -27,6 +28,7 @@ pub struct SupportSite {
 
 /// What was left after each step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SupportabilityCounts {
     /// Points that face up, eq. (2).
     pub contact_points: usize,

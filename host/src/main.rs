@@ -1,0 +1,21 @@
+//! The command `hangpose`.
+
+mod cli;
+
+use clap::Parser;
+use std::process::ExitCode;
+
+/// Bad input, or an output that cannot be written.
+const FAILED: u8 = 1;
+
+fn main() -> ExitCode {
+    let command = cli::Arguments::parse().command;
+    let result = match &command {
+        cli::Command::Predict(arguments) => cli::predict::run(arguments),
+        cli::Command::Inspect(arguments) => cli::inspect::run(arguments),
+    };
+    result.unwrap_or_else(|error| {
+        eprintln!("error: {error:#}");
+        ExitCode::from(FAILED)
+    })
+}
