@@ -229,7 +229,7 @@ fn parry() {
         assert!(all.len() > 1500);
         let thin = matches!(kind, 2 | 3 | 6);
         let [half, most, worst] = if thin {
-            [5e-5, 5e-4, 2e-2]
+            [5e-4, 2e-3, 2e-2]
         } else {
             [2e-6, 2e-5, 1e-3]
         };
