@@ -153,7 +153,8 @@ fn every_plane_through_three_points() {
     let mut random = Random(1);
     for round in 0..20_000 {
         let kind = round % KINDS;
-        let set = points(kind, 4 + round % 19, &mut random);
+        let count = if round % 500 < KINDS { 60 } else { 4 + round % 19 };
+        let set = points(kind, count, &mut random);
         let planes = Planes::through(&set);
         let origin = within(&set, &mut random);
         let e = f64::from(extent(&set, origin));
@@ -180,13 +181,14 @@ fn every_plane_through_three_points() {
     }
 }
 
-/// parry3d casts the same ray from within its hull of the same points. Its GJK leaves some 1e-4 of the extent across the
-/// plane that is hit, on needles and flat boxes up to a hundred times that; where the two differ, the test above says who
-/// is right. A grazing ray magnifies both, hence across the plane.
+/// parry3d casts the same ray from within its hull of the same points. Differences are taken across the plane that is
+/// hit, as a grazing ray magnifies what either rounds, and are of the extent. parry's GJK is an iteration of its own, and
+/// looser on thin and clustered sets; for the sets of 20 points every plane through three says how far each is off.
 #[test]
 fn parry() {
     let mut random = Random(2);
     let mut differences = [const { Vec::new() }; KINDS];
+    let (mut ours, mut theirs) = ([0.0f64; KINDS], [0.0f64; KINDS]);
     for round in 0..2000 {
         let kind = round % KINDS;
         let set = points(kind, [20, 60, 200, 1000][round % 4], &mut random);
@@ -197,6 +199,7 @@ fn parry() {
         let Some(hull) = ConvexPolyhedron::from_convex_hull(&corners) else {
             continue;
         };
+        let planes = (set.len() <= 30).then(|| Planes::through(&set));
         for _ in 0..8 {
             // Well within, as parry takes a ray from its surface either way.
             let mut sum = Vector::zeros();
@@ -212,7 +215,16 @@ fn parry() {
             );
             if let Some(hit) = hull.cast_local_ray_and_get_normal(&ray, 100.0, false) {
                 let across = (t - hit.time_of_impact).abs() * hit.normal.dot(ray.dir).abs();
-                differences[kind].push(across / extent(&set, origin));
+                let e = extent(&set, origin);
+                differences[kind].push(across / e);
+                if let Some(planes) = &planes {
+                    let exact = planes.exit(origin, direction, 0.0);
+                    let per_metre =
+                        planes.exit(origin, direction, 1e-3) - planes.exit(origin, direction, -1e-3);
+                    let off = |t: f32| (f64::from(t) - exact).abs() / per_metre * 2e-3 / f64::from(e);
+                    ours[kind] = ours[kind].max(off(t));
+                    theirs[kind] = theirs[kind].max(off(hit.time_of_impact));
+                }
             }
         }
     }
@@ -227,14 +239,14 @@ fn parry() {
             at(1.0)
         );
         assert!(all.len() > 1500);
-        let thin = matches!(kind, 2 | 3 | 6);
-        let [half, most, worst] = if thin {
-            [5e-4, 2e-3, 2e-2]
-        } else {
-            [2e-6, 2e-5, 1e-3]
+        println!("    off by {:.1e} here, {:.1e} there", ours[kind], theirs[kind]);
+        let [half, most, worst] = match kind {
+            2 | 3 | 6 => [5e-4, 5e-3, 2e-2],
+            4 => [2e-5, 2e-4, 1e-3],
+            _ => [2e-6, 2e-5, 1e-3],
         };
         assert!(
-            at(0.5) < half && at(0.95) < most && at(1.0) < worst,
+            at(0.5) < half && at(0.95) < most && at(1.0) < worst && ours[kind] < 1.5e-5,
             "kind {kind}"
         );
     }
