@@ -147,7 +147,7 @@ fn extent(set: &[Point], origin: Point) -> f32 {
     set.iter().map(|p| (p - origin).amax()).fold(0.0, f32::max)
 }
 
-/// The answer lies between the exit distances of the hull 1e-6 smaller and 1.5e-5 larger (of the extent).
+/// The answer lies between the exit distances of the hull 1e-6 smaller and 2e-5 larger (of the extent).
 #[test]
 fn every_plane_through_three_points() {
     let mut random = Random(1);
@@ -169,7 +169,7 @@ fn every_plane_through_three_points() {
             }
             let t = f64::from(exit_distance(&set, origin, direction));
             let low = planes.exit(origin, direction, -1e-6 * e);
-            let high = planes.exit(origin, direction, 1.5e-5 * e);
+            let high = planes.exit(origin, direction, 2e-5 * e);
             if !high.is_finite() {
                 continue;
             }
@@ -246,7 +246,7 @@ fn parry() {
             _ => [2e-6, 2e-5, 1e-3],
         };
         assert!(
-            at(0.5) < half && at(0.95) < most && at(1.0) < worst && ours[kind] < 1.5e-5,
+            at(0.5) < half && at(0.95) < most && at(1.0) < worst && ours[kind] < 2e-5,
             "kind {kind}"
         );
     }
