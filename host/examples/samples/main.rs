@@ -1,0 +1,293 @@
+//! Writes the shapes of `samples/`, byte for byte the same on every machine; with `--check` only compares.
+//!
+//! Objects are meshes in metres with z up, supporters the point clouds that a depth camera would give of theirs.
+
+mod shapes;
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::process::ExitCode;
+
+use shapes::{Body, V, add, arc, cross, dot, line, scale, sub, turn, unit};
+
+/// A mesh of closed bodies that may reach into each other, each with its name.
+type Mesh = Vec<(&'static str, Body)>;
+
+const X: V = [1.0, 0.0, 0.0];
+const Y: V = [0.0, 1.0, 0.0];
+const Z: V = [0.0, 0.0, 1.0];
+
+/// A mug of 3.5 dl: the cup stands on z = 0 about the z axis, the handle is on the side of +x.
+fn mug() -> Mesh {
+    let mut outline = vec![
+        (0.0, 0.0),
+        (0.012, 0.0),
+        (0.025, 0.0),
+        (0.037, 0.0),
+        (0.0398, 0.0012),
+        (0.041, 0.004),
+    ];
+    outline.extend((1..=12).map(|i| (0.041, 0.004 + 0.089 * f64::from(i) / 12.0)));
+    outline.extend([(0.0404, 0.0944), (0.039, 0.095), (0.0376, 0.0944)]);
+    outline.extend((0..=12).map(|i| (0.037, 0.093 - 0.085 * f64::from(i) / 12.0)));
+    outline.extend([
+        (0.0358, 0.0052),
+        (0.033, 0.004),
+        (0.022, 0.004),
+        (0.011, 0.004),
+        (0.0, 0.004),
+    ]);
+    // Its ends lie inside the wall; the hole between it and the wall is 22 mm by 45 mm.
+    let mut path = line([0.0385, 0.0, 0.075], [0.052, 0.0, 0.075], 4);
+    path.extend(&arc([0.052, 0.0, 0.059], [X, Z], [0.016; 2], [90.0, 0.0], 10)[1..]);
+    path.extend(&line([0.068, 0.0, 0.059], [0.068, 0.0, 0.036], 8)[1..]);
+    path.extend(&arc([0.052, 0.0, 0.036], [X, Z], [0.016; 2], [0.0, -90.0], 10)[1..]);
+    path.extend(&line([0.052, 0.0, 0.020], [0.0385, 0.0, 0.020], 4)[1..]);
+    let handle = Body::sweep(&path, Y, [0.006, 0.005], 24, [false; 2]);
+    vec![("cup", Body::revolve(&outline, 72)), ("handle", handle)]
+}
+
+/// Closed scissors, flat in the x-y plane: the screw at the origin, the tips at +x, the loops at -x.
+fn scissors() -> Mesh {
+    let mut mesh = Mesh::new();
+    let names = [
+        ["loop_left", "shank_left", "blade_left"],
+        ["loop_right", "shank_right", "blade_right"],
+    ];
+    for (names, side) in names.into_iter().zip([1.0, -1.0]) {
+        let mut path = arc(
+            [-0.062, side * 0.0205, 0.0],
+            [X, Y],
+            [0.022, 0.0165],
+            [0.0, 360.0],
+            56,
+        );
+        path[56] = path[0];
+        mesh.push((names[0], Body::sweep(&path, Z, [0.0035, 0.0035], 20, [true; 2])));
+        // From the loop to the blade on the other side, one above the other where they cross.
+        let z = side * 0.00135;
+        let path = line([-0.0425, side * 0.0135, z / 2.0], [-0.004, side * 0.0005, z], 12);
+        mesh.push((names[1], Body::sweep(&path, Z, [0.0014, 0.0032], 20, [true; 2])));
+        let outline = [
+            [-0.012, 0.001],
+            [-0.004, -0.006],
+            [0.03, -0.007],
+            [0.08, -0.001],
+            [0.081, 0.0],
+            [0.06, 0.0025],
+            [0.008, 0.006],
+            [-0.006, 0.006],
+        ];
+        let [low, high] = if side > 0.0 {
+            [-0.0001, 0.0026]
+        } else {
+            [-0.0026, 0.0001]
+        };
+        mesh.push((
+            names[2],
+            Body::prism(&outline.map(|[x, y]| [x, side * y]), low, high),
+        ));
+    }
+    let screw = [
+        (0.0, -0.0034),
+        (0.0032, -0.0034),
+        (0.004, -0.0028),
+        (0.004, 0.0028),
+        (0.0032, 0.0034),
+        (0.0, 0.0034),
+    ];
+    mesh.push(("screw", Body::revolve(&screw, 24)));
+    mesh
+}
+
+/// A hook on a wall: the plate's front at x = 0, the hook out along +x and up at its tip.
+fn hook() -> Mesh {
+    let plate = Body::cuboid([-0.0025, 0.0, 0.0], [0.005, 0.04, 0.08], 0.001);
+    let mut path = line([-0.003, 0.0, 0.0], [0.033, 0.0, 0.0], 12);
+    path.extend(&arc([0.033, 0.0, 0.012], [X, Z], [0.012; 2], [-90.0, 0.0], 12)[1..]);
+    path.extend(&line([0.045, 0.0, 0.012], [0.045, 0.0, 0.022], 4)[1..]);
+    vec![
+        ("plate", plate),
+        ("hook", Body::sweep(&path, Y, [0.004; 2], 24, [false, true])),
+    ]
+}
+
+/// A stand for six mugs: a disc, a post about the z axis, and pegs that rise by 20 degrees.
+fn mug_tree() -> Mesh {
+    let base = [
+        (0.0, 0.0),
+        (0.068, 0.0),
+        (0.07, 0.002),
+        (0.07, 0.010),
+        (0.0694, 0.0114),
+        (0.068, 0.012),
+        (0.0, 0.012),
+    ];
+    let mut post = vec![(0.0, 0.006)];
+    post.extend((0..=30).map(|i| (0.008, 0.006 + 0.286 * f64::from(i) / 30.0)));
+    post.extend([(0.0069, 0.296), (0.004, 0.2989), (0.0, 0.3)]);
+    let mut mesh = vec![
+        ("base", Body::revolve(&base, 72)),
+        ("post", Body::revolve(&post, 32)),
+    ];
+    let names = ["peg_1", "peg_2", "peg_3", "peg_4", "peg_5", "peg_6"];
+    let (cos, sin) = turn(20f64.to_radians());
+    for (i, name) in names.into_iter().enumerate() {
+        let (x, y) = turn(f64::from(60 * (i as u32 / 2) + 180 * (i as u32 % 2)).to_radians());
+        let along = [cos * x, cos * y, sin];
+        let start = [0.0, 0.0, 0.14 + 0.06 * (i / 2) as f64];
+        let path = line(
+            add(start, scale(along, 0.002)),
+            add(start, scale(along, 0.0735)),
+            24,
+        );
+        mesh.push((
+            name,
+            Body::sweep(&path, [-y, x, 0.0], [0.0045; 2], 20, [false, true]),
+        ));
+    }
+    mesh
+}
+
+/// splitmix64
+struct Random(u64);
+
+impl Random {
+    /// From 0 to 1, without 1.
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// `n` points evenly on what can be seen of the mesh from outside, and the normals there.
+fn sample_cloud(mesh: &Mesh, n: usize, seed: u64) -> (Vec<V>, Vec<V>) {
+    let mut random = Random(seed);
+    let bounds: Vec<(V, V)> = mesh.iter().map(|(_, body)| body.bounds()).collect();
+    let mut triangles = Vec::new();
+    let mut total = 0.0;
+    for (owner, (_, body)) in mesh.iter().enumerate() {
+        for t in &body.triangles {
+            let [a, b, c] = t.map(|i| body.vertices[i]);
+            let normal = cross(sub(b, a), sub(c, a));
+            total += dot(normal, normal).sqrt();
+            triangles.push((total, owner, [a, b, c], unit(normal)));
+        }
+    }
+    let (mut points, mut normals) = (Vec::new(), Vec::new());
+    while points.len() < n {
+        let pick = random.next() * total;
+        let (mut u, mut v) = (random.next(), random.next());
+        if u + v > 1.0 {
+            (u, v) = (1.0 - u, 1.0 - v);
+        }
+        let &(_, owner, [a, b, c], normal) = &triangles[triangles.partition_point(|t| t.0 <= pick)];
+        let p = add(a, add(scale(sub(b, a), u), scale(sub(c, a), v)));
+        let hidden = mesh.iter().enumerate().any(|(other, (_, body))| {
+            let (low, high) = bounds[other];
+            other != owner && (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i]) && body.contains(p)
+        });
+        if !hidden {
+            points.push(p);
+            normals.push(normal);
+        }
+    }
+    (points, normals)
+}
+
+fn obj(mesh: &Mesh) -> Vec<u8> {
+    let mut text = String::from("# metres, z up\n");
+    let mut first = 1;
+    for (name, body) in mesh {
+        writeln!(text, "o {name}").unwrap();
+        for [x, y, z] in &body.vertices {
+            // Adding 0 makes -0 a plain 0.
+            let micrometres = |c: f64| (c * 1e6).round() / 1e6 + 0.0;
+            writeln!(
+                text,
+                "v {:.6} {:.6} {:.6}",
+                micrometres(*x),
+                micrometres(*y),
+                micrometres(*z)
+            )
+            .unwrap();
+        }
+        for [a, b, c] in &body.triangles {
+            writeln!(text, "f {} {} {}", a + first, b + first, c + first).unwrap();
+        }
+        first += body.vertices.len();
+    }
+    text.into_bytes()
+}
+
+fn ply(points: &[V], normals: &[V]) -> Vec<u8> {
+    let mut bytes = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\n",
+        points.len()
+    );
+    for name in ["x", "y", "z", "nx", "ny", "nz"] {
+        writeln!(bytes, "property float {name}").unwrap();
+    }
+    bytes.push_str("end_header\n");
+    let mut bytes = bytes.into_bytes();
+    for (p, n) in points.iter().zip(normals) {
+        for c in p.iter().chain(n) {
+            bytes.extend((*c as f32).to_le_bytes());
+        }
+    }
+    bytes
+}
+
+fn main() -> ExitCode {
+    let check = match std::env::args().nth(1).as_deref() {
+        None => false,
+        Some("--check") => true,
+        Some(other) => {
+            eprintln!("samples: {other}? There is only --check.");
+            return ExitCode::from(2);
+        }
+    };
+    let cloud = |mesh: &Mesh, seed| {
+        let (points, normals) = sample_cloud(mesh, 10_000, seed);
+        ply(&points, &normals)
+    };
+    let files = [
+        ("mug.obj", obj(&mug())),
+        ("scissors.obj", obj(&scissors())),
+        ("hook.ply", cloud(&hook(), 1)),
+        ("mug_tree.ply", cloud(&mug_tree(), 2)),
+    ];
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples");
+    let mut all_well = true;
+    for (name, bytes) in files {
+        let path = folder.join(name);
+        if !check {
+            let written = std::fs::create_dir_all(&folder).and_then(|()| std::fs::write(&path, &bytes));
+            if let Err(error) = written {
+                eprintln!("samples: cannot write {}: {error}", path.display());
+                return ExitCode::FAILURE;
+            }
+            println!("samples/{name}: {} bytes", bytes.len());
+            continue;
+        }
+        match std::fs::read(&path) {
+            Ok(there) if there == bytes => {}
+            Ok(_) => {
+                eprintln!("samples/{name} is not what the generator makes; `make samples` writes it anew");
+                all_well = false;
+            }
+            Err(error) => {
+                eprintln!("samples/{name}: {error}; `make samples` writes it");
+                all_well = false;
+            }
+        }
+    }
+    if all_well {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    }
+}

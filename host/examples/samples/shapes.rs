@@ -1,0 +1,284 @@
+//! Closed triangle meshes from a few rules: revolve, sweep, box.
+
+use std::f64::consts::{PI, TAU};
+
+/// x, y, z in metres.
+pub(crate) type V = [f64; 3];
+
+pub(crate) fn add(a: V, b: V) -> V {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+pub(crate) fn sub(a: V, b: V) -> V {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+pub(crate) fn scale(a: V, s: f64) -> V {
+    a.map(|c| c * s)
+}
+
+pub(crate) fn dot(a: V, b: V) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(crate) fn cross(a: V, b: V) -> V {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+pub(crate) fn unit(a: V) -> V {
+    scale(a, 1.0 / dot(a, a).sqrt())
+}
+
+/// The cosine and the sine, the same on every machine.
+pub(crate) fn turn(angle: f64) -> (f64, f64) {
+    (libm::cos(angle), libm::sin(angle))
+}
+
+/// One closed surface, its triangles anticlockwise seen from outside.
+#[derive(Clone, Default)]
+pub(crate) struct Body {
+    pub(crate) vertices: Vec<V>,
+    pub(crate) triangles: Vec<[usize; 3]>,
+}
+
+impl Body {
+    /// Six times the signed volume.
+    fn volume(&self) -> f64 {
+        let corner = |t: &[usize; 3], i: usize| self.vertices[t[i]];
+        self.triangles
+            .iter()
+            .map(|t| dot(corner(t, 0), cross(corner(t, 1), corner(t, 2))))
+            .sum()
+    }
+
+    fn outward(mut self) -> Self {
+        if self.volume() < 0.0 {
+            for t in &mut self.triangles {
+                t.swap(1, 2);
+            }
+        }
+        self
+    }
+
+    fn ring(&mut self, ring: impl Iterator<Item = V>) -> usize {
+        let first = self.vertices.len();
+        self.vertices.extend(ring);
+        first
+    }
+
+    fn bridge(&mut self, a: usize, b: usize, count: usize) {
+        for i in 0..count {
+            let j = (i + 1) % count;
+            self.triangles.push([a + i, a + j, b + j]);
+            self.triangles.push([a + i, b + j, b + i]);
+        }
+    }
+
+    fn cap(&mut self, ring: usize, apex: V, count: usize) {
+        let tip = self.vertices.len();
+        self.vertices.push(apex);
+        for i in 0..count {
+            self.triangles.push([ring + i, ring + (i + 1) % count, tip]);
+        }
+    }
+
+    /// The solid that a closed outline of (radius, z) makes about the z axis; where the radius is 0 it meets the axis,
+    /// and there the outline begins and ends.
+    pub(crate) fn revolve(outline: &[(f64, f64)], count: usize) -> Self {
+        let mut body = Self::default();
+        let rings: Vec<usize> = (outline[1..outline.len() - 1].iter())
+            .map(|&(r, z)| {
+                body.ring((0..count).map(|i| {
+                    let (cos, sin) = turn(TAU * i as f64 / count as f64);
+                    [r * cos, r * sin, z]
+                }))
+            })
+            .collect();
+        for pair in rings.windows(2) {
+            body.bridge(pair[0], pair[1], count);
+        }
+        // The two poles; the cap at the start looks the other way.
+        let start = body.triangles.len();
+        body.cap(rings[0], [0.0, 0.0, outline[0].1], count);
+        for t in &mut body.triangles[start..] {
+            t.swap(0, 1);
+        }
+        body.cap(
+            rings[rings.len() - 1],
+            [0.0, 0.0, outline[outline.len() - 1].1],
+            count,
+        );
+        body.outward()
+    }
+
+    /// An ellipse of half axes `a` (along `side` where the path starts) and `b`, carried along the path without
+    /// twist. A path that ends where it began closes; any other ends round or flat, as `round` says of its two ends.
+    pub(crate) fn sweep(path: &[V], side: V, [a, b]: [f64; 2], count: usize, round: [bool; 2]) -> Self {
+        let closed = path[0] == path[path.len() - 1];
+        let n = if closed { path.len() - 1 } else { path.len() };
+        let tangent = |i: usize| {
+            let (before, after) = if closed {
+                ((i + n - 1) % n, (i + 1) % n)
+            } else {
+                (i.saturating_sub(1), (i + 1).min(n - 1))
+            };
+            unit(sub(path[after], path[before]))
+        };
+        let mut body = Self::default();
+        let mut rings = Vec::new();
+        let mut u = side;
+        let ellipse = |centre: V, t: V, u: V, size: f64| {
+            let v = cross(t, u);
+            (0..count).map(move |k| {
+                let (cos, sin) = turn(TAU * k as f64 / count as f64);
+                add(centre, add(scale(u, a * size * cos), scale(v, b * size * sin)))
+            })
+        };
+        // A quarter of a circle, seen from the side, in this many steps.
+        let steps = 4;
+        let rounding = |k: usize| turn(0.5 * PI * k as f64 / steps as f64);
+        for (i, &centre) in path[..n].iter().enumerate() {
+            let t = tangent(i);
+            u = unit(sub(u, scale(t, dot(u, t))));
+            if !closed && i == 0 && round[0] {
+                for k in (1..steps).rev() {
+                    let (size, back) = rounding(k);
+                    rings.push(body.ring(ellipse(add(centre, scale(t, -b * back)), t, u, size)));
+                }
+            }
+            rings.push(body.ring(ellipse(centre, t, u, 1.0)));
+            if !closed && i == n - 1 && round[1] {
+                for k in 1..steps {
+                    let (size, forth) = rounding(k);
+                    rings.push(body.ring(ellipse(add(centre, scale(t, b * forth)), t, u, size)));
+                }
+            }
+        }
+        for pair in rings.windows(2) {
+            body.bridge(pair[0], pair[1], count);
+        }
+        let last = rings[rings.len() - 1];
+        if closed {
+            body.bridge(last, rings[0], count);
+        } else {
+            let reach = round.map(|round| if round { b } else { 0.0 });
+            body.cap(last, add(path[n - 1], scale(tangent(n - 1), reach[1])), count);
+            let start = body.triangles.len();
+            body.cap(rings[0], add(path[0], scale(tangent(0), -reach[0])), count);
+            for t in &mut body.triangles[start..] {
+                t.swap(0, 1);
+            }
+        }
+        body.outward()
+    }
+
+    /// A convex outline in the x-y plane, from `low` to `high` in z.
+    pub(crate) fn prism(outline: &[[f64; 2]], low: f64, high: f64) -> Self {
+        let count = outline.len();
+        let mut body = Self::default();
+        let a = body.ring(outline.iter().map(|&[x, y]| [x, y, low]));
+        let b = body.ring(outline.iter().map(|&[x, y]| [x, y, high]));
+        body.bridge(a, b, count);
+        for i in 1..count - 1 {
+            body.triangles.push([a, a + i + 1, a + i]);
+            body.triangles.push([b, b + i, b + i + 1]);
+        }
+        body.outward()
+    }
+
+    /// A box about `centre` with its eight corners' edges along the axes cut by `chamfer`: each face a smaller
+    /// rectangle, joined by strips and corner triangles.
+    pub(crate) fn cuboid(centre: V, size: V, chamfer: f64) -> Self {
+        let mut body = Self::default();
+        // Corner (sx, sy, sz) has three vertices, one on each face that meets there.
+        let index = |corner: usize, axis: usize| corner * 3 + axis;
+        for corner in 0..8usize {
+            for axis in 0..3 {
+                let at = |i: usize| {
+                    let half = size[i] / 2.0 - if i == axis { 0.0 } else { chamfer };
+                    centre[i] + if corner >> i & 1 == 1 { half } else { -half }
+                };
+                body.vertices.push([at(0), at(1), at(2)]);
+            }
+        }
+        let mut faces: Vec<Vec<usize>> = Vec::new();
+        for axis in 0..3 {
+            let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+            for side in 0..2usize {
+                let c = |a: usize, b: usize| (side << axis) | (a << j) | (b << k);
+                // The face, and the strip along the edge parallel to `axis` that (side, other) name below.
+                faces.push(
+                    [c(0, 0), c(1, 0), c(1, 1), c(0, 1)]
+                        .map(|corner| index(corner, axis))
+                        .to_vec(),
+                );
+                for other in 0..2usize {
+                    // The edge along k where faces `axis` and `j` meet.
+                    let (p, q) = (c(other, 0), c(other, 1));
+                    faces.push(vec![index(p, axis), index(q, axis), index(q, j), index(p, j)]);
+                }
+            }
+        }
+        for corner in 0..8 {
+            faces.push((0..3).map(|axis| index(corner, axis)).collect());
+        }
+        for face in faces {
+            for i in 1..face.len() - 1 {
+                let mut t = [face[0], face[i], face[i + 1]];
+                let [a, b, c] = t.map(|v| body.vertices[v]);
+                // Convex, so that outward is away from the centre.
+                if dot(cross(sub(b, a), sub(c, a)), sub(a, centre)) < 0.0 {
+                    t.swap(1, 2);
+                }
+                body.triangles.push(t);
+            }
+        }
+        body
+    }
+
+    /// Winding number 1 within, 0 without (Van Oosterom and Strackee's solid angles).
+    pub(crate) fn contains(&self, p: V) -> bool {
+        let mut angle = 0.0;
+        for t in &self.triangles {
+            let [a, b, c] = t.map(|v| sub(self.vertices[v], p));
+            let [la, lb, lc] = [a, b, c].map(|v| dot(v, v).sqrt());
+            let numerator = dot(a, cross(b, c));
+            let denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+            angle += libm::atan2(numerator, denominator);
+        }
+        angle > PI
+    }
+
+    /// The box that holds it, as (low, high).
+    pub(crate) fn bounds(&self) -> (V, V) {
+        let mut bounds = ([f64::MAX; 3], [f64::MIN; 3]);
+        for v in &self.vertices {
+            for (i, &c) in v.iter().enumerate() {
+                bounds.0[i] = bounds.0[i].min(c);
+                bounds.1[i] = bounds.1[i].max(c);
+            }
+        }
+        bounds
+    }
+}
+
+/// A point `steps` times on the arc about `centre` from `from` to `to` degrees, in the plane of `x` and `y`.
+pub(crate) fn arc(centre: V, [x, y]: [V; 2], radii: [f64; 2], [from, to]: [f64; 2], steps: usize) -> Vec<V> {
+    (0..=steps)
+        .map(|i| {
+            let (cos, sin) = turn((from + (to - from) * i as f64 / steps as f64) * PI / 180.0);
+            add(centre, add(scale(x, radii[0] * cos), scale(y, radii[1] * sin)))
+        })
+        .collect()
+}
+
+/// The points of a straight line, both ends among them.
+pub(crate) fn line(a: V, b: V, steps: usize) -> Vec<V> {
+    (0..=steps)
+        .map(|i| add(a, scale(sub(b, a), i as f64 / steps as f64)))
+        .collect()
+}

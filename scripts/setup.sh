@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# Installs what `make test` and `make demo` need and this machine lacks. Quick when nothing is missing.
+set -euo pipefail
+
+as_root() {
+    if [ "$(id -u)" = 0 ]; then
+        "$@"
+    elif command -v sudo >/dev/null; then
+        sudo "$@"
+    else
+        return 1
+    fi
+}
+
+apt() {
+    if ! command -v apt-get >/dev/null || ! as_root true 2>/dev/null; then
+        echo "setup: please install: $*" >&2
+        echo "setup: on Debian: apt-get update && apt-get install --no-install-recommends $*" >&2
+        exit 1
+    fi
+    as_root apt-get update -qq
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null
+}
+
+missing=()
+# The linker for the host, and readelf and size for the archive.
+command -v cc >/dev/null || missing+=(gcc libc6-dev)
+command -v readelf >/dev/null || missing+=(binutils)
+
+if command -v rustup >/dev/null; then
+    have=$(rustup component list --installed)
+    for component in rustfmt clippy; do
+        case $have in *"$component"*) ;; *) rustup component add "$component" ;; esac
+    done
+fi
+if ! command -v cargo >/dev/null; then
+    echo "setup: Rust is missing (1.89 or later, with rustfmt and clippy)" >&2
+    exit 1
+fi
+
+# Bare metal: rustup's target where it is to be had, or else Debian's compiler with the source of `core`.
+# It lives in /usr/bin beside rustup's, which the PATH finds first.
+target=thumbv7em-none-eabihf
+if ! { command -v rustup >/dev/null && rustup target list --installed | grep -qx "$target"; } &&
+    ! { command -v rustup >/dev/null && rustup target add "$target" >/dev/null 2>&1; } &&
+    ! [ -e /usr/lib/rustlib/src/rust/library/core -a -x /usr/bin/rustc -a -x /usr/bin/cargo ]; then
+    missing+=(rustc-web cargo-web rust-web-src)
+fi
+
+[ ${#missing[@]} = 0 ] || apt "${missing[@]}"
