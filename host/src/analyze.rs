@@ -35,7 +35,12 @@ impl TooLarge {
 
     /// Holds a cloud against [`LIMITS`].
     pub fn check_cloud(cloud: &CloudFile) -> Result<(), Self> {
-        Self::check("points", cloud.points.len(), LIMITS.points, "thin the cloud out, for example to one point a millimetre")
+        Self::check(
+            "points",
+            cloud.points.len(),
+            LIMITS.points,
+            "thin the cloud out, for example to one point a millimetre",
+        )
     }
 
     fn check(what: &'static str, count: usize, limit: usize, remedy: &'static str) -> Result<(), Self> {

@@ -18,19 +18,12 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 impl Planes {
     fn through(points: &[Point]) -> Self {
-        let p: Vec<[f64; 3]> = points
-            .iter()
-            .map(|p| [p.x as f64, p.y as f64, p.z as f64])
-            .collect();
+        let p: Vec<[f64; 3]> = points.iter().map(|p| [p.x as f64, p.y as f64, p.z as f64]).collect();
         let mut planes = Vec::new();
         for i in 0..p.len() {
             for j in 0..i {
@@ -192,10 +185,7 @@ fn parry() {
     for round in 0..2000 {
         let kind = round % KINDS;
         let set = points(kind, [20, 60, 200, 1000][round % 4], &mut random);
-        let corners: Vec<_> = set
-            .iter()
-            .map(|p| parry3d::math::Vector::new(p.x, p.y, p.z))
-            .collect();
+        let corners: Vec<_> = set.iter().map(|p| parry3d::math::Vector::new(p.x, p.y, p.z)).collect();
         let Some(hull) = ConvexPolyhedron::from_convex_hull(&corners) else {
             continue;
         };
@@ -245,10 +235,7 @@ fn parry() {
             4 => [2e-5, 2e-4, 1e-3],
             _ => [2e-6, 2e-5, 1e-3],
         };
-        assert!(
-            at(0.5) < half && at(0.95) < most && at(1.0) < worst && ours[kind] < 2e-5,
-            "kind {kind}"
-        );
+        assert!(at(0.5) < half && at(0.95) < most && at(1.0) < worst && ours[kind] < 2e-5, "kind {kind}");
     }
 }
 
@@ -258,14 +245,9 @@ fn time() {
     let mut random = Random(3);
     for kind in 0..KINDS {
         let set = points(kind, 10_000, &mut random);
-        let rays: Vec<_> = (0..100)
-            .map(|_| (within(&set, &mut random), random.direction()))
-            .collect();
+        let rays: Vec<_> = (0..100).map(|_| (within(&set, &mut random), random.direction())).collect();
         let start = Instant::now();
-        let sum: f32 = rays
-            .iter()
-            .map(|&(origin, direction)| exit_distance(&set, origin, direction))
-            .sum();
+        let sum: f32 = rays.iter().map(|&(origin, direction)| exit_distance(&set, origin, direction)).sum();
         let each = start.elapsed().as_secs_f64() * 1e6 / rays.len() as f64;
         println!("kind {kind}: {each:.0} us for 10,000 points (sum {sum})");
     }

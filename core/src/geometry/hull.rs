@@ -41,11 +41,7 @@ pub fn exit_distance(points: &[Point], origin: Point, direction: Vector) -> f32 
         return 0.0;
     }
     let (_, leaves) = view.walk(points, portal, f64::INFINITY);
-    if leaves > AGREED {
-        leaves as f32 * view.extent
-    } else {
-        0.0
-    }
+    if leaves > AGREED { leaves as f32 * view.extent } else { 0.0 }
 }
 
 /// A corner of a portal as the ray sees it: two coordinates across it, relative to the nudged ray, and one along it, in
@@ -80,18 +76,10 @@ impl View {
         }
         // Any axis across the ray will do to find the point farthest from it.
         let along = direction;
-        let helper = if along.x.abs() < 0.6 * length {
-            Vector::x()
-        } else {
-            Vector::y()
-        };
+        let helper = if along.x.abs() < 0.6 * length { Vector::x() } else { Vector::y() };
         let across = unit(along.cross(&helper))?;
-        let mut view = Self {
-            origin,
-            axes: [across, along.cross(&across), along],
-            extent,
-            scale: 1.0 / extent,
-        };
+        let mut view =
+            Self { origin, axes: [across, along.cross(&across), along], extent, scale: 1.0 / extent };
         let mut farthest = [0.0, 0.0];
         let mut most = 0.0;
         for &p in points {
@@ -110,10 +98,7 @@ impl View {
 
     fn reversed(&self) -> Self {
         let [a, b, c] = self.axes;
-        Self {
-            axes: [a, b, -c],
-            ..*self
-        }
+        Self { axes: [a, b, -c], ..*self }
     }
 
     /// Where a point lies across the ray, in extents.
@@ -194,10 +179,7 @@ impl View {
             let v = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
             let area = cross(u, v);
             // The upward normal of the portal's plane, its third coordinate 1.
-            let slope = [
-                (u[1] * v[2] - u[2] * v[1]) / area,
-                (u[2] * v[0] - u[0] * v[2]) / area,
-            ];
+            let slope = [(u[1] * v[2] - u[2] * v[1]) / area, (u[2] * v[0] - u[0] * v[2]) / area];
             let height = a[2] + slope[0] * a[0] + slope[1] * a[1];
             if !(area > 0.0 && height.is_finite()) {
                 break;
@@ -279,9 +261,7 @@ mod tests {
     use super::*;
 
     fn cube() -> Vec<Point> {
-        (0..8)
-            .map(|i| Point::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32))
-            .collect()
+        (0..8).map(|i| Point::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32)).collect()
     }
 
     #[track_caller]
@@ -293,22 +273,10 @@ mod tests {
     fn cube_from_within() {
         let centre = Point::new(0.5, 0.5, 0.5);
         same(exit_distance(&cube(), centre, Vector::x()), 0.5, 1e-6);
-        same(
-            exit_distance(&cube(), Point::new(0.5, 0.25, 0.5), -Vector::y()),
-            0.25,
-            1e-6,
-        );
+        same(exit_distance(&cube(), Point::new(0.5, 0.25, 0.5), -Vector::y()), 0.25, 1e-6);
         // Through a corner and through the middle of an edge, exactly.
-        same(
-            exit_distance(&cube(), centre, Vector::new(1.0, 1.0, 1.0).normalize()),
-            0.75f32.sqrt(),
-            1e-5,
-        );
-        same(
-            exit_distance(&cube(), centre, Vector::new(0.0, 1.0, -1.0).normalize()),
-            0.5f32.sqrt(),
-            1e-5,
-        );
+        same(exit_distance(&cube(), centre, Vector::new(1.0, 1.0, 1.0).normalize()), 0.75f32.sqrt(), 1e-5);
+        same(exit_distance(&cube(), centre, Vector::new(0.0, 1.0, -1.0).normalize()), 0.5f32.sqrt(), 1e-5);
     }
 
     #[test]
@@ -318,16 +286,8 @@ mod tests {
         same(exit_distance(&cube(), face, -Vector::x()), 1.0, 1e-6);
         // Along the face, along an edge, from a corner.
         same(exit_distance(&cube(), face, Vector::y()), 0.7, 1e-5);
-        same(
-            exit_distance(&cube(), Point::new(0.0, 0.0, 0.3), Vector::z()),
-            0.7,
-            1e-5,
-        );
-        same(
-            exit_distance(&cube(), Point::origin(), Vector::repeat(1.0).normalize()),
-            3f32.sqrt(),
-            3e-5,
-        );
+        same(exit_distance(&cube(), Point::new(0.0, 0.0, 0.3), Vector::z()), 0.7, 1e-5);
+        same(exit_distance(&cube(), Point::origin(), Vector::repeat(1.0).normalize()), 3f32.sqrt(), 3e-5);
         assert_eq!(exit_distance(&cube(), Point::origin(), -Vector::z()), 0.0);
         // Before the cube, behind it, beside it.
         for x in [-0.5, 1.5] {
@@ -346,11 +306,7 @@ mod tests {
             Point::new(0.0, 0.0, 1.0),
         ];
         let origin = Point::new(0.1, 0.1, 0.1);
-        same(
-            exit_distance(&set, origin, Vector::repeat(1.0).normalize()),
-            0.7 / 3f32.sqrt(),
-            1e-6,
-        );
+        same(exit_distance(&set, origin, Vector::repeat(1.0).normalize()), 0.7 / 3f32.sqrt(), 1e-6);
         same(exit_distance(&set, origin, Vector::x()), 0.7, 1e-6);
         same(exit_distance(&set, origin, -Vector::z()), 0.1, 1e-6);
     }
@@ -387,11 +343,7 @@ mod tests {
         set.extend_from_within(..60);
         same(exit_distance(&set, at(0.3, 0.4), u), 0.7, 2e-5);
         same(exit_distance(&set, at(0.3, 0.4), -v), 0.4, 2e-5);
-        same(
-            exit_distance(&set, at(0.25, 0.25), (u + v).normalize()),
-            0.75 * 2f32.sqrt(),
-            3e-5,
-        );
+        same(exit_distance(&set, at(0.25, 0.25), (u + v).normalize()), 0.75 * 2f32.sqrt(), 3e-5);
         same(exit_distance(&set, at(0.3, 0.4), u.cross(&v)), 0.0, 2e-5);
 
         let segment = [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 0.0)];
@@ -412,10 +364,7 @@ mod tests {
             let mut set = cube();
             set[3].y = bad;
             assert!(exit_distance(&set, inside, Vector::x()).is_finite());
-            assert_eq!(
-                exit_distance(&cube(), Point::new(bad, 0.5, 0.5), Vector::x()),
-                0.0
-            );
+            assert_eq!(exit_distance(&cube(), Point::new(bad, 0.5, 0.5), Vector::x()), 0.0);
             assert_eq!(exit_distance(&cube(), inside, Vector::new(bad, 0.0, 0.0)), 0.0);
         }
         assert_eq!(exit_distance(&cube(), inside, Vector::zeros()), 0.0);
@@ -429,9 +378,7 @@ mod tests {
             (state >> 8) as f32 / (1 << 24) as f32 - 0.5
         };
         for _ in 0..100 {
-            let set: Vec<Point> = (0..50)
-                .map(|_| Point::new(random(), random(), random()))
-                .collect();
+            let set: Vec<Point> = (0..50).map(|_| Point::new(random(), random(), random())).collect();
             let origin = Point::from((set[0].coords + set[1].coords + set[2].coords + set[3].coords) / 4.0);
             let direction = Vector::new(random(), random(), random()).normalize();
             let t = exit_distance(&set, origin, direction);

@@ -19,24 +19,12 @@ const Z: V = [0.0, 0.0, 1.0];
 
 /// A mug of 3.5 dl: the cup stands on z = 0 about the z axis, the handle is on the side of +x.
 fn mug() -> Mesh {
-    let mut outline = vec![
-        (0.0, 0.0),
-        (0.012, 0.0),
-        (0.025, 0.0),
-        (0.037, 0.0),
-        (0.0398, 0.0012),
-        (0.041, 0.004),
-    ];
+    let mut outline =
+        vec![(0.0, 0.0), (0.012, 0.0), (0.025, 0.0), (0.037, 0.0), (0.0398, 0.0012), (0.041, 0.004)];
     outline.extend((1..=12).map(|i| (0.041, 0.004 + 0.089 * f64::from(i) / 12.0)));
     outline.extend([(0.0404, 0.0944), (0.039, 0.095), (0.0376, 0.0944)]);
     outline.extend((0..=12).map(|i| (0.037, 0.093 - 0.085 * f64::from(i) / 12.0)));
-    outline.extend([
-        (0.0358, 0.0052),
-        (0.033, 0.004),
-        (0.022, 0.004),
-        (0.011, 0.004),
-        (0.0, 0.004),
-    ]);
+    outline.extend([(0.0358, 0.0052), (0.033, 0.004), (0.022, 0.004), (0.011, 0.004), (0.0, 0.004)]);
     // Its ends lie inside the wall; the hole between it and the wall is 22 mm by 45 mm.
     let mut path = line([0.0385, 0.0, 0.075], [0.052, 0.0, 0.075], 4);
     path.extend(&arc([0.052, 0.0, 0.059], [X, Z], [0.016; 2], [90.0, 0.0], 10)[1..]);
@@ -50,18 +38,9 @@ fn mug() -> Mesh {
 /// Closed scissors, flat in the x-y plane: the screw at the origin, the tips at +x, the loops at -x.
 fn scissors() -> Mesh {
     let mut mesh = Mesh::new();
-    let names = [
-        ["loop_left", "shank_left", "blade_left"],
-        ["loop_right", "shank_right", "blade_right"],
-    ];
+    let names = [["loop_left", "shank_left", "blade_left"], ["loop_right", "shank_right", "blade_right"]];
     for (names, side) in names.into_iter().zip([1.0, -1.0]) {
-        let mut path = arc(
-            [-0.062, side * 0.0205, 0.0],
-            [X, Y],
-            [0.022, 0.0165],
-            [0.0, 360.0],
-            56,
-        );
+        let mut path = arc([-0.062, side * 0.0205, 0.0], [X, Y], [0.022, 0.0165], [0.0, 360.0], 56);
         path[56] = path[0];
         mesh.push((names[0], Body::sweep(&path, Z, [0.0035, 0.0035], 20, [true; 2])));
         // From the loop to the blade on the other side, one above the other where they cross.
@@ -78,15 +57,8 @@ fn scissors() -> Mesh {
             [0.008, 0.006],
             [-0.006, 0.006],
         ];
-        let [low, high] = if side > 0.0 {
-            [-0.0001, 0.0026]
-        } else {
-            [-0.0026, 0.0001]
-        };
-        mesh.push((
-            names[2],
-            Body::prism(&outline.map(|[x, y]| [x, side * y]), low, high),
-        ));
+        let [low, high] = if side > 0.0 { [-0.0001, 0.0026] } else { [-0.0026, 0.0001] };
+        mesh.push((names[2], Body::prism(&outline.map(|[x, y]| [x, side * y]), low, high)));
     }
     let screw = [
         (0.0, -0.0034),
@@ -100,16 +72,14 @@ fn scissors() -> Mesh {
     mesh
 }
 
-/// A hook on a wall: the plate's front at x = 0, the hook out along +x and up at its tip.
+/// A hook on a wall: the plate's front at x = 0, the hook out along +x, far enough for a mug beside the plate, and
+/// up at its tip.
 fn hook() -> Mesh {
     let plate = Body::cuboid([-0.0025, 0.0, 0.0], [0.005, 0.04, 0.08], 0.001);
-    let mut path = line([-0.003, 0.0, 0.0], [0.033, 0.0, 0.0], 12);
-    path.extend(&arc([0.033, 0.0, 0.012], [X, Z], [0.012; 2], [-90.0, 0.0], 12)[1..]);
-    path.extend(&line([0.045, 0.0, 0.012], [0.045, 0.0, 0.022], 4)[1..]);
-    vec![
-        ("plate", plate),
-        ("hook", Body::sweep(&path, Y, [0.004; 2], 24, [false, true])),
-    ]
+    let mut path = line([-0.003, 0.0, 0.0], [0.078, 0.0, 0.0], 27);
+    path.extend(&arc([0.078, 0.0, 0.012], [X, Z], [0.012; 2], [-90.0, 0.0], 12)[1..]);
+    path.extend(&line([0.090, 0.0, 0.012], [0.090, 0.0, 0.024], 4)[1..]);
+    vec![("plate", plate), ("hook", Body::sweep(&path, Y, [0.004; 2], 24, [false, true]))]
 }
 
 /// A stand for six mugs: a disc, a post about the z axis, and pegs that rise by 20 degrees.
@@ -126,25 +96,15 @@ fn mug_tree() -> Mesh {
     let mut post = vec![(0.0, 0.006)];
     post.extend((0..=30).map(|i| (0.008, 0.006 + 0.286 * f64::from(i) / 30.0)));
     post.extend([(0.0069, 0.296), (0.004, 0.2989), (0.0, 0.3)]);
-    let mut mesh = vec![
-        ("base", Body::revolve(&base, 72)),
-        ("post", Body::revolve(&post, 32)),
-    ];
+    let mut mesh = vec![("base", Body::revolve(&base, 72)), ("post", Body::revolve(&post, 32))];
     let names = ["peg_1", "peg_2", "peg_3", "peg_4", "peg_5", "peg_6"];
     let (cos, sin) = turn(20f64.to_radians());
     for (i, name) in names.into_iter().enumerate() {
         let (x, y) = turn(f64::from(60 * (i as u32 / 2) + 180 * (i as u32 % 2)).to_radians());
         let along = [cos * x, cos * y, sin];
         let start = [0.0, 0.0, 0.14 + 0.06 * (i / 2) as f64];
-        let path = line(
-            add(start, scale(along, 0.002)),
-            add(start, scale(along, 0.0735)),
-            24,
-        );
-        mesh.push((
-            name,
-            Body::sweep(&path, [-y, x, 0.0], [0.0045; 2], 20, [false, true]),
-        ));
+        let path = line(add(start, scale(along, 0.002)), add(start, scale(along, 0.0735)), 24);
+        mesh.push((name, Body::sweep(&path, [-y, x, 0.0], [0.0045; 2], 20, [false, true])));
     }
     mesh
 }
@@ -206,14 +166,7 @@ fn obj(mesh: &Mesh) -> Vec<u8> {
         for [x, y, z] in &body.vertices {
             // Adding 0 makes -0 a plain 0.
             let micrometres = |c: f64| (c * 1e6).round() / 1e6 + 0.0;
-            writeln!(
-                text,
-                "v {:.6} {:.6} {:.6}",
-                micrometres(*x),
-                micrometres(*y),
-                micrometres(*z)
-            )
-            .unwrap();
+            writeln!(text, "v {:.6} {:.6} {:.6}", micrometres(*x), micrometres(*y), micrometres(*z)).unwrap();
         }
         for [a, b, c] in &body.triangles {
             writeln!(text, "f {} {} {}", a + first, b + first, c + first).unwrap();
@@ -224,10 +177,7 @@ fn obj(mesh: &Mesh) -> Vec<u8> {
 }
 
 fn ply(points: &[V], normals: &[V]) -> Vec<u8> {
-    let mut bytes = format!(
-        "ply\nformat binary_little_endian 1.0\nelement vertex {}\n",
-        points.len()
-    );
+    let mut bytes = format!("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", points.len());
     for name in ["x", "y", "z", "nx", "ny", "nz"] {
         writeln!(bytes, "property float {name}").unwrap();
     }
@@ -285,9 +235,5 @@ fn main() -> ExitCode {
             }
         }
     }
-    if all_well {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    }
+    if all_well { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }

@@ -22,11 +22,7 @@ pub(crate) fn dot(a: V, b: V) -> f64 {
 }
 
 pub(crate) fn cross(a: V, b: V) -> V {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 pub(crate) fn unit(a: V) -> V {
@@ -49,10 +45,7 @@ impl Body {
     /// Six times the signed volume.
     fn volume(&self) -> f64 {
         let corner = |t: &[usize; 3], i: usize| self.vertices[t[i]];
-        self.triangles
-            .iter()
-            .map(|t| dot(corner(t, 0), cross(corner(t, 1), corner(t, 2))))
-            .sum()
+        self.triangles.iter().map(|t| dot(corner(t, 0), cross(corner(t, 1), corner(t, 2)))).sum()
     }
 
     fn outward(mut self) -> Self {
@@ -107,11 +100,7 @@ impl Body {
         for t in &mut body.triangles[start..] {
             t.swap(0, 1);
         }
-        body.cap(
-            rings[rings.len() - 1],
-            [0.0, 0.0, outline[outline.len() - 1].1],
-            count,
-        );
+        body.cap(rings[rings.len() - 1], [0.0, 0.0, outline[outline.len() - 1].1], count);
         body.outward()
     }
 
@@ -211,11 +200,7 @@ impl Body {
             for side in 0..2usize {
                 let c = |a: usize, b: usize| (side << axis) | (a << j) | (b << k);
                 // The face, and the strip along the edge parallel to `axis` that (side, other) name below.
-                faces.push(
-                    [c(0, 0), c(1, 0), c(1, 1), c(0, 1)]
-                        .map(|corner| index(corner, axis))
-                        .to_vec(),
-                );
+                faces.push([c(0, 0), c(1, 0), c(1, 1), c(0, 1)].map(|corner| index(corner, axis)).to_vec());
                 for other in 0..2usize {
                     // The edge along k where faces `axis` and `j` meet.
                     let (p, q) = (c(other, 0), c(other, 1));
@@ -278,7 +263,5 @@ pub(crate) fn arc(centre: V, [x, y]: [V; 2], radii: [f64; 2], [from, to]: [f64; 
 
 /// The points of a straight line, both ends among them.
 pub(crate) fn line(a: V, b: V, steps: usize) -> Vec<V> {
-    (0..=steps)
-        .map(|i| add(a, scale(sub(b, a), i as f64 / steps as f64)))
-        .collect()
+    (0..=steps).map(|i| add(a, scale(sub(b, a), i as f64 / steps as f64))).collect()
 }

@@ -18,7 +18,12 @@ pub(super) fn read_object(path: &Path, scale: f32, up: Axis) -> Result<MeshFile>
 }
 
 /// Reads a supporter, samples it if it is a mesh, and says on standard error what is odd about it.
-pub(super) fn read_supporter(path: &Path, scale: f32, up: Axis, arguments: &CloudArguments) -> Result<CloudFile> {
+pub(super) fn read_supporter(
+    path: &Path,
+    scale: f32,
+    up: Axis,
+    arguments: &CloudArguments,
+) -> Result<CloudFile> {
     let (cloud, notes) = match files::read_supporter(path)? {
         SupporterFile::Mesh(mut mesh) => {
             TooLarge::check_mesh(&mesh).with_context(|| path.display().to_string())?;

@@ -2,7 +2,10 @@
 
 use hangpose::Params;
 use hangpose::geometry::MassProperties;
-use hangpose::hanging::{Cost, Counts, HangabilityCounts, HangingPose, HangingSite, Rejection, Stage, SupportSite, SupportabilityCounts};
+use hangpose::hanging::{
+    Cost, Counts, HangabilityCounts, HangingPose, HangingSite, Rejection, Stage, SupportSite,
+    SupportabilityCounts,
+};
 use serde::Serialize;
 
 /// Raised when a reader of the last schema could misunderstand the new one.
@@ -81,7 +84,6 @@ pub(super) struct InspectedObject<'a> {
     pub(super) centre_of_mass: [f32; 3],
     pub(super) counts: HangabilityCounts,
     pub(super) sites: Vec<Site<'a, HangingSite>>,
-    pub(super) memory_bytes: usize,
     pub(super) seconds: f64,
 }
 
@@ -97,12 +99,16 @@ pub(super) struct InspectedSupporter<'a> {
     pub(super) normals_renormalised: usize,
     pub(super) counts: SupportabilityCounts,
     pub(super) sites: Vec<Site<'a, SupportSite>>,
-    pub(super) memory_bytes: usize,
     pub(super) seconds: f64,
 }
 
 impl<'a> Pose<'a> {
-    pub(super) fn new(rank: usize, pose: &HangingPose, object: &'a [HangingSite], supporter: &'a [SupportSite]) -> Self {
+    pub(super) fn new(
+        rank: usize,
+        pose: &HangingPose,
+        object: &'a [HangingSite],
+        supporter: &'a [SupportSite],
+    ) -> Self {
         let rows = pose.pose.to_homogeneous().transpose();
         let (i, j) = (pose.object_site as usize, pose.support_site as usize);
         Self {

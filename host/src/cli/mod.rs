@@ -1,7 +1,7 @@
 //! What the command `hangpose` understands, one file a task.
 
-pub(crate) mod inspect;
 mod input;
+pub(crate) mod inspect;
 mod json;
 mod output;
 mod params;
@@ -193,7 +193,9 @@ mod tests {
     fn turns_are_rotations_that_bring_the_axis_up() {
         let axes = [("x", [1.0, 0.0, 0.0]), ("+y", [0.0, 1.0, 0.0]), ("Z", [0.0, 0.0, 1.0])];
         for (name, axis) in axes {
-            for (name, axis) in [(name.to_string(), axis), (format!("-{}", &name[name.len() - 1..]), axis.map(|x| -x))] {
+            for (name, axis) in
+                [(name.to_string(), axis), (format!("-{}", &name[name.len() - 1..]), axis.map(|x| -x))]
+            {
                 let up = Axis::parse(&name).unwrap();
                 assert_eq!(up.turn(axis).map(|x| x + 0.0), [0.0, 0.0, 1.0], "{name}");
                 let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| up.turn(e).into());

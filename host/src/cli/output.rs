@@ -21,11 +21,15 @@ impl Output {
         if path == Path::new("-") {
             return Ok(Self::Standard);
         }
-        let remedy = || format!("{}: cannot be written; give a file in a folder that you may write to", path.display());
+        let remedy = || {
+            format!("{}: cannot be written; give a file in a folder that you may write to", path.display())
+        };
         // A link stays a link: what it points to is replaced.
         let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         if target.exists() && !target.is_file() {
-            return Ok(Self::Stream(std::fs::File::options().write(true).open(&target).with_context(remedy)?));
+            return Ok(Self::Stream(
+                std::fs::File::options().write(true).open(&target).with_context(remedy)?,
+            ));
         }
         if target.is_file() {
             std::fs::File::options().append(true).open(&target).with_context(remedy)?;
@@ -48,7 +52,9 @@ impl Output {
     pub(super) fn write(self, text: &str) -> Result<()> {
         match self {
             Self::Standard => std::io::stdout().write_all(text.as_bytes()).context("standard output"),
-            Self::Stream(mut stream) => stream.write_all(text.as_bytes()).context("the JSON could not be written"),
+            Self::Stream(mut stream) => {
+                stream.write_all(text.as_bytes()).context("the JSON could not be written")
+            }
             Self::File { mut temporary, path } => {
                 temporary.write_all(text.as_bytes()).with_context(|| path.display().to_string())?;
                 temporary.persist(&path).with_context(|| path.display().to_string())?;

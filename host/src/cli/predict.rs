@@ -3,11 +3,10 @@
 use super::json::{self, PerPart, Pose, Prediction, Reason, Seconds, Stats};
 use super::output::Output;
 use super::{PredictArguments, input, progress};
-use anyhow::{Result, ensure};
-use hangpose::geometry::{Cloud, Mesh};
-use hangpose::hanging::{self, AnalysisError, HangingPose, Object, Supporter, predict};
-use hangpose::{CentreOfMass, Monitor, Params, analyze_object, analyze_supporter};
-use std::path::Path;
+use anyhow::Result;
+use hangpose::hanging::{self, HangingPose, Object, Supporter, predict};
+use hangpose::memory::Limits;
+use hangpose::{CentreOfMass, Monitor};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -35,23 +34,40 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     if let Some(viewpoint) = arguments.cloud.viewpoint {
         cloud = cloud.seen_from(viewpoint)?;
     }
+    let (cloud, params) = (&cloud, &params);
     let mut seconds = Seconds { read: start.elapsed().as_secs_f64(), ..Seconds::default() };
 
-    let (mut object_memory, mut supporter_memory) = (Vec::new(), Vec::new());
+    let mesh = &mesh.mesh()?;
+    let limits = Limits {
+        vertices: mesh.vertices().len(),
+        triangles: mesh.triangles().len(),
+        samples: params.samples,
+        points: cloud.points().len(),
+    };
+    let memory_bytes = PerPart { object: Object::bytes(&limits), supporter: Supporter::bytes(&limits) };
+    let object_memory = &mut vec![0; memory_bytes.object];
+    let supporter_memory = &mut vec![0; memory_bytes.supporter];
     let mut poses = vec![HangingPose::default(); arguments.top as usize];
     let monitors = [Monitor::new(), Monitor::new(), Monitor::new()];
-    let (object, supporter, prediction) = progress::show_while(&monitors.each_ref(), || -> Result<_> {
-        let (object, supporter) = analyse(
-            (&mesh.mesh()?, &mut object_memory, &monitors[0]),
-            (&cloud, &mut supporter_memory, &monitors[1]),
-            &params,
-            arguments.threads > 1,
-            &mut seconds,
-        )?;
-        let start = Instant::now();
-        let prediction = predict(&object, &supporter, &params, &mut poses, &monitors[2])?;
-        seconds.matching = start.elapsed().as_secs_f64();
-        Ok((object, supporter, prediction))
+    let monitors = monitors.each_ref();
+    let (object, supporter, prediction) = progress::show_while(&monitors, || -> Result<_> {
+        let analyse_object = || timed(move || Object::analyze(mesh, params, object_memory, monitors[0]));
+        let analyse_supporter =
+            || timed(move || Supporter::analyze(cloud, params, supporter_memory, monitors[1]));
+        let (object, supporter) = if arguments.threads > 1 {
+            std::thread::scope(|scope| {
+                let object = scope.spawn(analyse_object);
+                let supporter = analyse_supporter();
+                (object.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), supporter)
+            })
+        } else {
+            (analyse_object(), analyse_supporter())
+        };
+        let (object, supporter) = ((object.0?, object.1), (supporter.0?, supporter.1));
+        let (prediction, matching) =
+            timed(|| predict(&object.0, &supporter.0, params, &mut poses, monitors[2]));
+        (seconds.object, seconds.supporter, seconds.matching) = (object.1, supporter.1, matching);
+        Ok((object.0, supporter.0, prediction?))
     })?;
     seconds.total = start.elapsed().as_secs_f64();
 
@@ -64,7 +80,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
         );
     }
     if is_table_shown {
-        print_table(&prediction, &object, &supporter);
+        print!("{}", table(&prediction, &object, &supporter));
     }
     if let Some(output) = output {
         let document = Prediction {
@@ -76,13 +92,42 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
             rejection: prediction.rejection.as_ref().map(Reason::from),
             stats: Stats {
                 seconds,
-                memory_bytes: PerPart { object: object_memory_len, supporter: supporter_memory_len },
+                memory_bytes,
                 sites: PerPart { object: object.sites().len(), supporter: supporter.sites().len() },
                 counts: prediction.counts,
             },
-            params: &params,
+            params,
         };
         output.write(&json::text(&document))?;
     }
     Ok(if prediction.rejection.is_some() { ExitCode::from(REJECTED) } else { ExitCode::SUCCESS })
+}
+
+/// The result of `work` and how long it took, in seconds.
+fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let start = Instant::now();
+    let result = work();
+    (result, start.elapsed().as_secs_f64())
+}
+
+/// The poses, or the reason why there are none, for people.
+fn table(prediction: &hanging::Prediction, object: &Object, supporter: &Supporter) -> String {
+    if let Some(rejection) = &prediction.rejection {
+        return format!("nothing hangs: {}\n", rejection.stage);
+    }
+    let point = |p: &hangpose::geometry::Point| {
+        let [x, y, z] = [p.x, p.y, p.z].map(|x| 1000.0 * x);
+        format!("{x:8.1} {y:7.1} {z:7.1}")
+    };
+    let mut text = String::from(
+        "rank    total  collision  boundary  contact area   on the supporter, mm    with the object's, mm\n",
+    );
+    for (rank, pose) in (1..).zip(prediction.poses) {
+        let hanging::Cost { collision, boundary, contact_area, total } = pose.cost;
+        let on = point(&supporter.sites()[pose.support_site as usize].position);
+        let with = point(&object.sites()[pose.object_site as usize].position);
+        text +=
+            &format!("{rank:4} {total:8.3} {collision:10} {boundary:9.3} {contact_area:13.3} {on} {with}\n");
+    }
+    text
 }

@@ -1,0 +1,139 @@
+//! `hangpose inspect`.
+
+use super::json::{self, InspectedObject, InspectedSupporter};
+use super::{InspectArguments, Role, input};
+use anyhow::Result;
+use hangpose::files::{self, SupporterFile};
+use hangpose::geometry::Vector;
+use hangpose::{Monitor, analyze_object, analyze_supporter};
+use std::process::ExitCode;
+use std::time::Instant;
+
+pub(crate) fn run(arguments: &InspectArguments) -> Result<ExitCode> {
+    let role = match arguments.role {
+        Some(role) => role,
+        None => match files::read_supporter(&arguments.file)? {
+            SupporterFile::Mesh(_) => Role::Object,
+            SupporterFile::Cloud(_) => Role::Supporter,
+        },
+    };
+    let text = match role {
+        Role::Object => object(arguments)?,
+        Role::Supporter => supporter(arguments)?,
+    };
+    print!("{text}");
+    Ok(ExitCode::SUCCESS)
+}
+
+fn object(arguments: &InspectArguments) -> Result<String> {
+    let params = arguments.method.params()?;
+    let file = input::read_object(&arguments.file, arguments.scale, arguments.up)?;
+    let mesh = file.mesh()?;
+    let start = Instant::now();
+    let mut memory = Vec::new();
+    let object = analyze_object(&mesh, &params, &mut memory, &Monitor::new())?;
+    let seconds = start.elapsed().as_secs_f64();
+    let inspected = InspectedObject {
+        schema: json::SCHEMA,
+        role: "object",
+        vertices: mesh.vertices().len(),
+        triangles: mesh.triangles().len(),
+        extents: mesh.aabb().extents().into(),
+        mass: *object.mass(),
+        centre_of_mass: object.centre_of_mass().into(),
+        counts: object.counts(),
+        sites: json::sites(object.sites()),
+        seconds,
+    };
+    if arguments.json {
+        return Ok(json::text(&inspected));
+    }
+    let (mass, counts) = (object.mass(), object.counts());
+    let closed = match (mass.is_closed, mass.is_inside_out) {
+        (false, _) => "open",
+        (true, false) => "closed",
+        (true, true) => "closed but inside out, taken the other way round",
+    };
+    let mut text = format!("object, {} triangles, {closed}\n", inspected.triangles);
+    text += &format!("size            {} mm\n", millimetres(&mesh.aabb().extents()));
+    text += &format!("centre of mass  {} mm\n", millimetres(&object.centre_of_mass().coords));
+    if let Some(volume) = mass.volume {
+        text += &format!("volume          {:.1} cm3\n", volume * 1e6);
+    }
+    text += &format!("area            {:.1} cm2\n", mass.area * 1e4);
+    text += &format!(
+        "contact points  {}, in {} clusters, {} with free space, {} encircled, {} different\n",
+        counts.contact_points, counts.clusters, counts.with_free_space, counts.encircled, counts.sites
+    );
+    if !object.sites().is_empty() {
+        text += "site  position, mm               hanging direction      free space, mm  encircled  points\n";
+    }
+    for (index, site) in object.sites().iter().enumerate() {
+        text += &format!(
+            "{index:4}  {}  {}  {:14.1}  {:9.2}  {:6}\n",
+            millimetres(&site.position.coords),
+            direction(&site.hanging_direction),
+            site.free_space_radius * 1000.0,
+            site.encircled,
+            site.contact_points,
+        );
+    }
+    Ok(text)
+}
+
+fn supporter(arguments: &InspectArguments) -> Result<String> {
+    let params = arguments.method.params()?;
+    let file = input::read_supporter(&arguments.file, arguments.scale, arguments.up, &arguments.cloud)?;
+    let cloud = file.cloud()?;
+    let start = Instant::now();
+    let mut memory = Vec::new();
+    let supporter = analyze_supporter(&cloud, &params, &mut memory, &Monitor::new())?;
+    let seconds = start.elapsed().as_secs_f64();
+    let extents = supporter.points().aabb().extents();
+    let inspected = InspectedSupporter {
+        schema: json::SCHEMA,
+        role: "supporter",
+        points: cloud.points().len(),
+        extents: extents.into(),
+        normals_estimated: supporter.normals().estimated,
+        normals_renormalised: supporter.normals().renormalised,
+        counts: supporter.counts(),
+        sites: json::sites(supporter.sites()),
+        seconds,
+    };
+    if arguments.json {
+        return Ok(json::text(&inspected));
+    }
+    let counts = supporter.counts();
+    let mut text = format!(
+        "supporter, {} points, {} normals estimated, {} brought to unit length\n",
+        inspected.points, inspected.normals_estimated, inspected.normals_renormalised
+    );
+    text += &format!("size            {} mm\n", millimetres(&extents));
+    text += &format!(
+        "contact points  {}, in {} clusters, {} of them sites\n",
+        counts.contact_points, counts.clusters, counts.sites
+    );
+    if !supporter.sites().is_empty() {
+        text += "site  position, mm               hanging direction      radius, mm  to the boundary, mm\n";
+    }
+    for (index, site) in supporter.sites().iter().enumerate() {
+        let [d1, d2] = site.boundary_distances.map(|d| d * 1000.0);
+        text += &format!(
+            "{index:4}  {}  {}  {:10.1}  {d1:8.1}  {d2:8.1}\n",
+            millimetres(&site.position.coords),
+            direction(&site.hanging_direction),
+            site.support_radius * 1000.0,
+        );
+    }
+    Ok(text)
+}
+
+fn millimetres(v: &Vector) -> String {
+    let [x, y, z] = [v.x, v.y, v.z].map(|x| 1000.0 * x);
+    format!("{x:8.1} {y:8.1} {z:8.1}")
+}
+
+fn direction(v: &Vector) -> String {
+    format!("{:6.3} {:6.3} {:6.3}", v.x, v.y, v.z)
+}
