@@ -13,6 +13,8 @@ struct Mode {
     support: u32,
 }
 
+/// Searches start this far apart, in bandwidths: close enough that more starts hardly find more modes.
+const SEED_DISTANCE: f32 = 0.5;
 /// A mode has converged when it moves by less than this fraction of the bandwidth.
 const CONVERGED: f32 = 1e-3;
 /// A mode that has not converged after so many steps is taken as it is.
@@ -26,8 +28,8 @@ pub(crate) const fn scratch_bytes(points: usize) -> usize {
 /// Mean shift with a flat kernel of radius `bandwidth` (Comaniciu and Meer 2002): writes the cluster of each point
 /// of `tree` into `labels` and returns how many clusters there are.
 ///
-/// The search starts from points that lie at least a bandwidth apart, taken in the order in which `seeds` names
-/// them, so that the clusters do not depend on the frame. Modes closer than the bandwidth are one: the one with
+/// The search starts from points that lie apart, taken in the order in which `seeds` names them, so that the
+/// clusters do not depend on the frame. Modes closer than the bandwidth are one: the one with
 /// more support, then the earlier. A point belongs to the nearest mode. Some clusters may be empty.
 pub(crate) fn cluster(
     tree: &PointTree,
@@ -37,13 +39,12 @@ pub(crate) fn cluster(
     mut scratch: Arena,
 ) -> Result<usize, OutOfMemory> {
     let modes = scratch.slice::<Mode>(tree.points().len())?;
-    let bandwidth_squared = bandwidth * bandwidth;
-    let apart = |a: &Point, b: &Point| (a - b).norm_squared() >= bandwidth_squared;
+    let apart = |a: &Point, b: &Point, distance: f32| (a - b).norm_squared() >= distance * distance;
     // Starting points stand in `modes` until they are shifted.
     let mut count = 0;
     for &seed in seeds {
         let seed = tree.points()[seed as usize];
-        if modes[..count].iter().all(|mode| apart(&mode.position.into(), &seed)) {
+        if modes[..count].iter().all(|mode| apart(&mode.position.into(), &seed, SEED_DISTANCE * bandwidth)) {
             modes[count] = Mode { position: seed.into(), support: 0 };
             count += 1;
         }
@@ -59,7 +60,7 @@ pub(crate) fn cluster(
     let mut kept = 0;
     for i in 0..count {
         let position = modes[i].position.into();
-        if modes[..kept].iter().all(|mode| apart(&mode.position.into(), &position)) {
+        if modes[..kept].iter().all(|mode| apart(&mode.position.into(), &position, bandwidth)) {
             modes[kept] = modes[i];
             kept += 1;
         }

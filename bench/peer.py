@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""Holds hangpose against another implementation of the paper, written with Open3D and scikit-learn.
+
+  peer.py --peer PEER.py time   OBJECT SUPPORTER            both on the same files in turn: time and memory
+  peer.py --peer PEER.py agree  --meshes DIR [OBJECT:SUPPORTER ...]   do the best poses of both agree?
+
+PEER.py offers `load(object, supporter, scale, supporter_mesh)` and `predict(mesh, points, normals)`, which
+returns ranked poses (dicts with a 4x4 `pose`) and timings. DIR holds meshes with a `manifest.json` that gives
+`name`, `file`, `scale_to_m` and `up_axis`. Needs open3d, scikit-learn and scipy.
+"""
+import argparse
+import importlib.util
+import itertools
+import json
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+import open3d as o3d
+
+o3d.utility.set_verbosity_level(o3d.utility.VerbosityLevel.Error)
+
+TOP = 5
+NEAR_M, NEAR_DEG = 0.015, 20.0
+PAIRS = pathlib.Path(__file__).with_name("pairs.txt")
+
+
+def hangpose(command, *arguments):
+    """The poses and statistics of one prediction of the `paper` profile on one thread."""
+    run = [command, "predict", "--profile", "paper", "--threads", "1", "--json", "-", *map(str, arguments)]
+    result = subprocess.run(run, capture_output=True, text=True)
+    if result.returncode not in (0, 3):
+        sys.exit(result.stderr)
+    document = json.loads(result.stdout)
+    return [np.array(p["pose"]).reshape(4, 4) for p in document["poses"]], document["stats"]
+
+
+def time(peer, command, args):
+    """Both in turn, so that a change of the machine's speed meets both."""
+    mesh, points, normals = peer.load(args.object, args.supporter, 1.0, False)
+    peer.predict(mesh, points, normals)
+    theirs, ours = [], []
+    for _ in range(args.runs):
+        theirs.append(peer.predict(mesh, points, normals)[1]["total_s"])
+        stats = hangpose(command, "--object", args.object, "--supporter", args.supporter)[1]
+        ours.append(sum(stats["seconds"][stage] for stage in ("object", "supporter", "matching")))
+    ratios = sorted(t / o for t, o in zip(theirs, ours))
+    print(f"object {args.object}, supporter {args.supporter}: {len(points)} points, {args.runs} runs in turn")
+    print(f"peer      {statistics.median(theirs):8.3f} s (median)")
+    print(f"hangpose  {statistics.median(ours):8.3f} s (median), profile paper, one thread")
+    print(f"ratio     {statistics.median(ratios):8.1f} (median), {ratios[0]:.1f} to {ratios[-1]:.1f}")
+    memory = stats["memory_bytes"]
+    total = sum(memory.values())
+    print(f"memory    {total / 2**20:8.2f} MiB of model and scratch: {memory}")
+
+
+def load(entry, folder):
+    """A mesh from the manifest, in metres with z up."""
+    mesh = o3d.io.read_triangle_mesh(str(folder / entry["file"]))
+    if len(mesh.triangles) < 0.9 * entry["faces"]:
+        sys.exit(f"{entry['file']}: Open3D reads {len(mesh.triangles)} of {entry['faces']} triangles; take another")
+    mesh.scale(entry["scale_to_m"], np.zeros(3))
+    turns = {"-x": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]], "+y": [[1, 0, 0], [0, 0, -1], [0, 1, 0]], "+z": np.eye(3)}
+    mesh.rotate(np.array(turns[entry["up_axis"]], dtype=float), center=np.zeros(3))
+    mesh.remove_duplicated_vertices()
+    mesh.compute_triangle_normals()
+    return mesh
+
+
+def apart(a, b, centre):
+    """How far apart two poses are: metres at the object's centre, and degrees."""
+    turn = np.degrees(np.arccos(np.clip((np.trace(a[:3, :3].T @ b[:3, :3]) - 1) / 2, -1, 1)))
+    return np.linalg.norm((a - b)[:3, :3] @ centre + (a - b)[:3, 3]), turn
+
+
+def do_agree(some, others, centre):
+    gaps = [apart(a, b, centre) for a, b in itertools.product(some[:TOP], others[:TOP])]
+    return any(metres <= NEAR_M and degrees <= NEAR_DEG for metres, degrees in gaps)
+
+
+def agree(peer, command, args):
+    """For each pair, how often one of the best five of one run is near one of the best five of another."""
+    folder = pathlib.Path(args.meshes)
+    manifest = {entry["name"]: entry for entry in json.loads((folder / "manifest.json").read_text())}
+    print(f"near: within {NEAR_M * 1000:.0f} mm at the object's centre and {NEAR_DEG:.0f} degrees; "
+          f"{args.runs} runs each with other samples")
+    print("pair                                                    poses  hangpose-peer  peer-peer  hangpose-hangpose")
+    agreed = pairs = 0
+    for pair in args.pairs:
+        names = pair.split(":")
+        mesh, supporter = (load(manifest[name], folder) for name in names)
+        cloud = supporter.sample_points_poisson_disk(10000, use_triangle_normal=True)
+        points, normals = np.asarray(cloud.points), np.asarray(cloud.normals)
+        centre = mesh.get_axis_aligned_bounding_box().get_center()
+        with tempfile.TemporaryDirectory() as scratch:
+            object_file, supporter_file = scratch + "/object.ply", scratch + "/supporter.ply"
+            o3d.io.write_triangle_mesh(object_file, mesh)
+            o3d.io.write_point_cloud(supporter_file, cloud)
+            files = ("--object", object_file, "--supporter", supporter_file)
+            ours = [hangpose(command, *files, "--seed", seed)[0] for seed in range(args.runs)]
+        theirs = [[p["pose"] for p in peer.predict(mesh, points, normals)[0]] for _ in range(args.runs)]
+        rate = lambda some: statistics.mean(do_agree(a, b, centre) for a, b in some)
+        cross = rate(list(itertools.product(ours, theirs)))
+        spread = [rate(list(itertools.combinations(runs, 2))) for runs in (theirs, ours)]
+        has_poses = all(theirs)
+        pairs += has_poses
+        agreed += has_poses and cross >= 0.5
+        print(f"{pair:55} {len(theirs[0]):5} {cross:14.0%} {spread[0]:10.0%} {spread[1]:18.0%}", flush=True)
+    print(f"{agreed} of {pairs} pairs where the peer has poses agree in at least half of the runs")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--peer", required=True)
+    parser.add_argument("--command", default="target/release/hangpose")
+    parser.add_argument("--runs", type=int, default=5)
+    tasks = parser.add_subparsers(required=True)
+    task = tasks.add_parser("time")
+    task.add_argument("object")
+    task.add_argument("supporter")
+    task.set_defaults(task=time)
+    task = tasks.add_parser("agree")
+    task.add_argument("--meshes", required=True)
+    task.add_argument("pairs", nargs="*", default=PAIRS.read_text().split())
+    task.set_defaults(task=agree)
+    args = parser.parse_args()
+    spec = importlib.util.spec_from_file_location("peer", args.peer)
+    peer = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(peer)
+    args.task(peer, args.command, args)
+
+
+if __name__ == "__main__":
+    main()
