@@ -1,22 +1,76 @@
-//! The core on a microcontroller: static memory, no allocator, no unwinding.
+//! A whole prediction on a microcontroller: static memory, no allocator, no unwinding.
 #![no_std]
 
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
+use hangpose_core::geometry::{Cloud, Mesh};
+use hangpose_core::hanging::{HangingPose, Object, Supporter, predict};
+use hangpose_core::memory::Limits;
+use hangpose_core::{Monitor, Params};
 
-use hangpose_core::geometry::{Point, Vector, hull};
+/// The largest inputs that this program takes.
+const LIMITS: Limits = Limits { vertices: 1000, triangles: 2000, samples: 2000, points: 2000 };
+const PARAMS: Params = Params { samples: LIMITS.samples, ..Params::paper() };
 
-static POINTS: [Point; 4] = [
-    Point::new(0.0, 0.0, 0.0),
-    Point::new(0.1, 0.0, 0.0),
-    Point::new(0.0, 0.1, 0.0),
-    Point::new(0.0, 0.0, 0.1),
-];
+/// Whether the memory below is in use.
+static IS_BUSY: AtomicBool = AtomicBool::new(false);
+static mut OBJECT: [u8; Object::bytes(&LIMITS)] = [0; Object::bytes(&LIMITS)];
+static mut SUPPORTER: [u8; Supporter::bytes(&LIMITS)] = [0; Supporter::bytes(&LIMITS)];
 
-/// Distance in metres from (`x`, `y`, `z`) upwards to the hull of the static points.
+/// Writes the position of the best pose of a mesh on a cloud to `position` and returns how many poses there are,
+/// or -1 if an input is broken or larger than this program takes.
+///
+/// # Safety
+///
+/// The pointers lead to as many elements as the counts say, and `position` to three floats.
 #[unsafe(no_mangle)]
-pub extern "C" fn hangpose_demo(x: f32, y: f32, z: f32) -> f32 {
-    hull::exit_distance(&POINTS, Point::new(x, y, z), Vector::z())
+pub unsafe extern "C" fn hangpose_demo(
+    vertices: *const [f32; 3],
+    vertex_count: usize,
+    triangles: *const [u32; 3],
+    triangle_count: usize,
+    points: *const [f32; 3],
+    point_count: usize,
+    position: *mut [f32; 3],
+) -> i32 {
+    if IS_BUSY.swap(true, Ordering::Acquire) {
+        return -1;
+    }
+    // SAFETY: the caller vouches for the pointers, and no one else has the statics until IS_BUSY is cleared.
+    let (vertices, triangles, points, position, object_memory, supporter_memory) = unsafe {
+        (
+            core::slice::from_raw_parts(vertices, vertex_count),
+            core::slice::from_raw_parts(triangles, triangle_count),
+            core::slice::from_raw_parts(points, point_count),
+            &mut *position,
+            &mut *&raw mut OBJECT,
+            &mut *&raw mut SUPPORTER,
+        )
+    };
+    let count = best(vertices, triangles, points, position, object_memory, supporter_memory);
+    IS_BUSY.store(false, Ordering::Release);
+    count.map_or(-1, |count| count as i32)
+}
+
+fn best(
+    vertices: &[[f32; 3]],
+    triangles: &[[u32; 3]],
+    points: &[[f32; 3]],
+    position: &mut [f32; 3],
+    object_memory: &mut [u8],
+    supporter_memory: &mut [u8],
+) -> Option<usize> {
+    let monitor = Monitor::new();
+    let mesh = Mesh::new(vertices, triangles).ok()?;
+    let object = Object::analyze(&mesh, &PARAMS, object_memory, &monitor).ok()?;
+    let cloud = Cloud::new(points, None).ok()?;
+    let supporter = Supporter::analyze(&cloud, &PARAMS, supporter_memory, &monitor).ok()?;
+    let mut poses = [HangingPose::default(); 1];
+    let prediction = predict(&object, &supporter, &PARAMS, &mut poses, &monitor).ok()?;
+    if let Some(best) = prediction.poses.first() {
+        *position = best.pose.translation.vector.into();
+    }
+    Some(prediction.poses.len())
 }
 
 /// Set when a panic has stopped the program, for the debugger to see.

@@ -201,15 +201,15 @@ fn the_object_may_lie_in_any_frame() {
         let moved = Scene { object: scene.object.map(|p| motion * p), ..Scene::key_on_peg() };
         let (moved, _) = moved.predict(&params);
         // Rounding moves the samples a little, and with them the sites and the order of poses of like cost. The
-        // ten best of either must be among the other's, within the 4 degrees between directions, which are
-        // 8 mm at the far probe, and the 2 mm between samples.
+        // ten best of either must be among the other's, within two of the steps of 3.6 degrees between
+        // directions, which are 14 mm at the far probe.
         let back: Vec<Pose> = moved.iter().map(|m| m.pose * motion).collect();
         let straight: Vec<Pose> = poses.iter().map(|p| p.pose).collect();
         for (some, others) in [(&straight, &back), (&back, &straight)] {
             for pose in &some[..10] {
                 let closest =
                     others.iter().map(|other| gap(pose, other, probes)).fold(f32::INFINITY, f32::min);
-                assert!(closest < 0.010, "{index}: {closest}");
+                assert!(closest < 0.015, "{index}: {closest}");
             }
         }
     }

@@ -1,0 +1,60 @@
+//! `cargo bench`: the time of each stage and the memory of one prediction, on the samples and one thread.
+
+use hangpose::hanging::{HangingPose, Object, Supporter, predict};
+use hangpose::memory::Limits;
+use hangpose::{Monitor, Params, files};
+use std::path::Path;
+use std::time::Instant;
+
+const RUNS: usize = 15;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples");
+    println!("median of {RUNS} runs, milliseconds; memory is model and scratch, MiB");
+    println!("object    supporter  profile    object  supporter  matching    total   memory");
+    for (object, supporter) in
+        [("mug", "mug_tree"), ("mug", "hook"), ("scissors", "mug_tree"), ("scissors", "hook")]
+    {
+        let object_file = files::read_mesh(&samples.join(format!("{object}.obj")))?;
+        let supporter_file = files::read_cloud(&samples.join(format!("{supporter}.ply")))?;
+        for (profile, params) in [("paper", Params::paper()), ("default", Params::default())] {
+            let (mesh, cloud, monitor) = (object_file.mesh()?, supporter_file.cloud()?, Monitor::new());
+            let limits = Limits {
+                vertices: mesh.vertices().len(),
+                triangles: mesh.triangles().len(),
+                samples: params.samples,
+                points: cloud.points().len(),
+            };
+            let mut memory = (vec![0; Object::bytes(&limits)], vec![0; Supporter::bytes(&limits)]);
+            let mebibytes = (memory.0.len() + memory.1.len()) as f64 / f64::from(1 << 20);
+            let mut times = [const { Vec::new() }; 4];
+            for _ in 0..RUNS {
+                let start = Instant::now();
+                let object = Object::analyze(&mesh, &params, &mut memory.0, &monitor)?;
+                let after_object = Instant::now();
+                let supporter = Supporter::analyze(&cloud, &params, &mut memory.1, &monitor)?;
+                let after_supporter = Instant::now();
+                let mut poses = [HangingPose::default(); 10];
+                std::hint::black_box(predict(&object, &supporter, &params, &mut poses, &monitor)?);
+                let end = Instant::now();
+                let stages = [
+                    after_object - start,
+                    after_supporter - after_object,
+                    end - after_supporter,
+                    end - start,
+                ];
+                for (times, stage) in times.iter_mut().zip(stages) {
+                    times.push(stage);
+                }
+            }
+            let [object_time, supporter_time, matching, total] = times.map(|mut stage| {
+                stage.sort();
+                stage[RUNS / 2].as_secs_f64() * 1000.0
+            });
+            println!(
+                "{object:9} {supporter:10} {profile:8} {object_time:8.1}  {supporter_time:9.1} {matching:9.1} {total:8.1} {mebibytes:8.2}"
+            );
+        }
+    }
+    Ok(())
+}
