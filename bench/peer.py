@@ -60,7 +60,7 @@ def time(peer, command, args):
 
 def load(entry, folder):
     """A mesh from the manifest, in metres with z up."""
-    shape = trimesh.load(folder / entry["file"], force="mesh", process=False)
+    shape = trimesh.load(folder / entry["file"], force="mesh", process=False, skip_materials=True)
     mesh = o3d.geometry.TriangleMesh(o3d.utility.Vector3dVector(shape.vertices), o3d.utility.Vector3iVector(shape.faces))
     mesh.scale(entry["scale_to_m"], np.zeros(3))
     turns = {"-x": [[0, 0, 1], [0, 1, 0], [-1, 0, 0]], "+y": [[1, 0, 0], [0, 0, -1], [0, 1, 0]], "+z": np.eye(3)}

@@ -28,20 +28,72 @@ pub(crate) const fn scratch_bytes(count: usize) -> usize {
         .saturating_add(array_bytes::<u32>(candidates).saturating_mul(3))
 }
 
+/// Why no samples can be drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SamplingError {
+    /// More samples than are possible.
+    TooMany {
+        /// How many were asked for.
+        count: usize,
+        /// The most that there may be.
+        limit: usize,
+    },
+    /// There is not one place for a normal for each place for a point.
+    Lengths {
+        /// Places for points.
+        points: usize,
+        /// Places for normals.
+        normals: usize,
+    },
+    /// The memory is too small.
+    OutOfMemory(OutOfMemory),
+}
+
+impl From<OutOfMemory> for SamplingError {
+    fn from(error: OutOfMemory) -> Self {
+        Self::OutOfMemory(error)
+    }
+}
+
+impl core::fmt::Display for SamplingError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::TooMany { count, limit } => {
+                write!(f, "{count} samples were asked for, at most {limit} are possible")
+            }
+            Self::Lengths { points, normals } => {
+                write!(
+                    f,
+                    "there are places for {points} points and for {normals} normals, but both come in pairs"
+                )
+            }
+            Self::OutOfMemory(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for SamplingError {}
+
 /// Draws `points.len()` points from the surface of `mesh`, evenly spread, with the normals of their triangles.
 ///
-/// `points` and `normals` have the same length; positions in metres. The same seed gives the same points, and a
-/// rigid motion of the mesh moves them along (up to rounding). `memory` holds [`sample_bytes`].
+/// Positions in metres; `normals` is as long as `points`. The same seed gives the same points, and a rigid motion
+/// of the mesh moves them along (up to rounding). `memory` holds [`sample_bytes`].
 pub fn sample(
     mesh: &Mesh,
     seed: u64,
     points: &mut [[f32; 3]],
     normals: &mut [[f32; 3]],
     memory: &mut [u8],
-) -> Result<(), OutOfMemory> {
+) -> Result<(), SamplingError> {
+    if points.len() > MAX_SAMPLES {
+        return Err(SamplingError::TooMany { count: points.len(), limit: MAX_SAMPLES });
+    }
+    if points.len() != normals.len() {
+        return Err(SamplingError::Lengths { points: points.len(), normals: normals.len() });
+    }
     let scratch = Arena::new(memory, sample_bytes(points.len()))?;
     let (points, normals) = (bytemuck::cast_slice_mut(points), bytemuck::cast_slice_mut(normals));
-    sample_into(mesh, seed, points, normals, scratch)
+    Ok(sample_into(mesh, seed, points, normals, scratch)?)
 }
 
 /// [`sample`], for callers that have an arena.
@@ -283,6 +335,21 @@ mod tests {
                 .fold(f32::INFINITY, f32::min);
             assert!(count < 500 || closest > 0.6 * 2.0 * r_max, "{count}: {closest} of {}", 2.0 * r_max);
         }
+    }
+
+    #[test]
+    fn names_what_is_wrong() {
+        let torus = test_shapes::torus(0.04, 0.01, 48, 16);
+        let mut four = ([[0.0; 3]; 4], [[0.0; 3]; 4]);
+        let error = sample(&torus.mesh(), 0, &mut four.0, &mut four.1[..3], &mut []);
+        assert_eq!(error, Err(SamplingError::Lengths { points: 4, normals: 3 }));
+        let error = sample(&torus.mesh(), 0, &mut four.0, &mut four.1, &mut []);
+        let needed = sample_bytes(4);
+        assert_eq!(error, Err(SamplingError::OutOfMemory(OutOfMemory { needed, given: 0 })));
+        let mut many = vec![[0.0; 3]; MAX_SAMPLES + 1];
+        let error = sample(&torus.mesh(), 0, &mut many.clone(), &mut many, &mut []);
+        assert_eq!(error, Err(SamplingError::TooMany { count: MAX_SAMPLES + 1, limit: MAX_SAMPLES }));
+        assert_eq!(sample(&torus.mesh(), 0, &mut [], &mut [], &mut vec![0; sample_bytes(0)]), Ok(()));
     }
 
     #[test]
