@@ -6,7 +6,7 @@
 
 PEER.py offers `load(object, supporter, scale, supporter_mesh)` and `predict(mesh, points, normals)`, which
 returns ranked poses (dicts with a 4x4 `pose`) and timings. DIR holds meshes with a `manifest.json` that gives
-`name`, `file`, `scale_to_m` and `up_axis`. Needs open3d, scikit-learn, scipy and trimesh.
+`name`, `file`, `scale_to_m` and `up_axis`. Needs open3d, scikit-learn, scipy, trimesh and pillow.
 """
 import argparse
 import importlib.util

@@ -1,0 +1,3 @@
+//! Judges predicted poses: shapes of many kinds, dropped in two physics engines.
+
+pub mod solid;
