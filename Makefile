@@ -1,10 +1,11 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench samples clean
+.PHONY: help setup demo test bench peer samples clean
 
 help:
 	@echo "make demo     hang the sample mug on the sample hook"
 	@echo "make test     everything that must hold"
-	@echo "make bench    how long it takes"
+	@echo "make bench    how long it takes, in how much memory"
+	@echo "make peer     the same beside another implementation: PEER=peer.py [MESHES=folder]"
 	@echo "make samples  write samples/ anew"
 	@echo "make setup    install what is missing"
 	@echo "make clean    remove what was built"
@@ -27,6 +28,18 @@ test: setup
 
 bench: setup
 	cargo bench --workspace
+
+peer_python = build/peer/bin/python
+
+$(peer_python): bench/requirements.txt
+	python3 -m venv build/peer
+	$(peer_python) -m pip install --quiet --requirement bench/requirements.txt
+	@touch $@
+
+peer: setup $(peer_python)
+	cargo build --release -p hangpose
+	$(peer_python) bench/peer.py --peer $(PEER) time samples/mug.obj samples/mug_tree.ply
+	$(if $(MESHES),$(peer_python) bench/peer.py --peer $(PEER) agree --meshes $(MESHES))
 
 samples:
 	cargo run --release -p hangpose --example samples
