@@ -147,8 +147,9 @@ fn count_collisions(
         }
         let aabb = node.aabb();
         let centre = to_object * aabb.centre();
-        // A little more than half the diagonal, for what the transformation rounds off.
-        let radius = 0.5 * aabb.diagonal() * 1.001 + 1e-7;
+        // Half the diagonal, and what the transformation rounds off.
+        let rounding = 8.0 * f32::EPSILON * (aabb.max.coords.amax() + centre.coords.amax());
+        let radius = 0.5 * aabb.diagonal() + rounding;
         stop = meter.distance_queries(1);
         if !surface.is_within(&centre, radius) {
             if surface.is_inside(&centre) {
