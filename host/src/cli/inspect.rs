@@ -65,9 +65,11 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
             _ => "the mean of the surface",
         }
     );
-    if let Some(volume) = mass.volume {
-        text += &format!("volume          {:.1} cm3\n", volume * 1e6);
-    }
+    text += &match mass.volume {
+        Some(volume) => format!("volume          {:.1} cm3\n", volume * 1e6),
+        // To the method a triangle that is turned the wrong way is a hole with a lid.
+        None => "volume          none: the mesh has gaps, or not all its triangles face outwards\n".into(),
+    };
     text += &format!("area            {:.1} cm2\n", mass.area * 1e4);
     text += &format!(
         "contact points  {}, in {} clusters, {} with free space, {} encircled, {} different\n",
