@@ -15,7 +15,7 @@ fn main() -> ExitCode {
         cli::Command::Inspect(arguments) => cli::inspect::run(arguments),
     };
     result.unwrap_or_else(|error| {
-        eprintln!("error: {error:#}");
+        cli::say("error", format_args!("{error:#}"));
         ExitCode::from(FAILED)
     })
 }

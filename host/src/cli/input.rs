@@ -1,63 +1,112 @@
-//! Reads an object or a supporter: file, units, axes, limits, and what a person should know about it.
+//! Makes an object or a supporter of what a file holds: units, axes, limits, and what a person should know about it.
 
+use super::terminal::say;
 use super::{Axis, CloudArguments};
 use anyhow::{Context, Result};
-use hangpose::files::{self, CloudFile, MeshFile, SupporterFile};
-use hangpose::geometry::Aabb;
+use hangpose::files::{CloudFile, MeshFile, SupporterFile};
+use hangpose::geometry::{Aabb, Cloud};
+use hangpose::hanging::Supporter;
 use hangpose::{TooLarge, sample_supporter};
 use std::path::Path;
 
-/// Reads an object and says on standard error what is odd about it.
-pub(super) fn read_object(path: &Path, scale: f32, up: Axis) -> Result<MeshFile> {
-    let mut mesh = files::read_mesh(path)?;
-    TooLarge::check_mesh(&mesh).with_context(|| path.display().to_string())?;
-    place(&mut mesh.vertices, scale, up);
-    let aabb = mesh.mesh().with_context(|| path.display().to_string())?.aabb();
-    tell(path, &mesh.notes, warn_of_size(&aabb, "object", "--object-scale"));
-    Ok(mesh)
+/// How a file's coordinates become metres with z up.
+pub(super) struct Placement {
+    pub(super) scale: f32,
+    pub(super) up: Axis,
+    /// The name of the option that sets the scale, for those who have to be told.
+    pub(super) scale_option: &'static str,
 }
 
-/// Reads a supporter, samples it if it is a mesh, and says on standard error what is odd about it.
-pub(super) fn read_supporter(
+/// A shape in metres with z up.
+pub(super) struct Placed<T> {
+    pub(super) shape: T,
+    /// What is odd about its size.
+    pub(super) scale_warning: Option<String>,
+}
+
+/// Places an object and says on standard error what is odd about it.
+pub(super) fn object(path: &Path, mut mesh: MeshFile, placement: &Placement) -> Result<Placed<MeshFile>> {
+    let at = || path.display().to_string();
+    TooLarge::check_mesh(&mesh).with_context(at)?;
+    placement.apply(&mut mesh.vertices);
+    let aabb = mesh.mesh().with_context(at)?.aabb();
+    let scale_warning = placement.warn_of_size(&aabb, "object");
+    tell(path, &mesh.notes, &scale_warning);
+    Ok(Placed { shape: mesh, scale_warning })
+}
+
+/// Places a supporter, samples it if it is a mesh, and says on standard error what is odd about it.
+pub(super) fn supporter(
     path: &Path,
-    scale: f32,
-    up: Axis,
+    file: SupporterFile,
+    placement: &Placement,
     arguments: &CloudArguments,
-) -> Result<CloudFile> {
-    let (cloud, notes) = match files::read_supporter(path)? {
+    seed: u64,
+) -> Result<Placed<CloudFile>> {
+    let at = || path.display().to_string();
+    let (cloud, notes) = match file {
         SupporterFile::Mesh(mut mesh) => {
-            TooLarge::check_mesh(&mesh).with_context(|| path.display().to_string())?;
-            place(&mut mesh.vertices, scale, up);
-            let checked = mesh.mesh().with_context(|| path.display().to_string())?;
-            (sample_supporter(&checked, arguments.supporter_points as usize, 0), mesh.notes)
+            TooLarge::check_mesh(&mesh).with_context(at)?;
+            placement.apply(&mut mesh.vertices);
+            let checked = mesh.mesh().with_context(at)?;
+            (sample_supporter(&checked, arguments.supporter_points as usize, seed), mesh.notes)
         }
         SupporterFile::Cloud(mut cloud) => {
-            TooLarge::check_cloud(&cloud).with_context(|| path.display().to_string())?;
-            place(&mut cloud.points, scale, up);
+            TooLarge::check_cloud(&cloud).with_context(at)?;
+            placement.apply(&mut cloud.points);
             for normal in cloud.normals.iter_mut().flatten() {
-                *normal = up.turn(*normal);
+                *normal = placement.up.turn(*normal);
             }
             let notes = core::mem::take(&mut cloud.notes);
             (cloud, notes)
         }
     };
-    let aabb = Aabb::of(cloud.cloud().with_context(|| path.display().to_string())?.points());
-    tell(path, &notes, warn_of_size(&aabb, "supporter", "--supporter-scale"));
-    Ok(cloud)
+    let aabb = Aabb::of(cloud.cloud().with_context(at)?.points());
+    let scale_warning = placement.warn_of_size(&aabb, "supporter");
+    tell(path, &notes, &scale_warning);
+    Ok(Placed { shape: cloud, scale_warning })
 }
 
-fn place(points: &mut [[f32; 3]], scale: f32, up: Axis) {
-    for point in points {
-        *point = up.turn(point.map(|x| x * scale));
+/// The points as the core takes them, and from where they were seen.
+pub(super) fn seen<'a>(file: &'a CloudFile, arguments: &CloudArguments) -> Result<Cloud<'a>> {
+    let cloud = file.cloud()?;
+    match arguments.viewpoint {
+        Some(viewpoint) => cloud.seen_from(viewpoint).context("--viewpoint"),
+        None => Ok(cloud),
     }
 }
 
-fn tell(path: &Path, notes: &[String], warning: Option<String>) {
+/// Says what became of the normals of a cloud. That some were too long or short, the reader has said.
+pub(super) fn tell_of_normals(path: &Path, supporter: &Supporter, arguments: &CloudArguments) {
+    let (estimated, points) = (supporter.normals().estimated, supporter.points().points().len());
+    let is_seen = arguments.viewpoint.is_some();
+    let side = match (estimated == points, is_seen) {
+        (true, true) => "and face the viewpoint",
+        (true, false) => {
+            "and their outside was guessed: say --viewpoint if it is known where the camera stood"
+        }
+        (false, _) => "and turned like those around them",
+    };
+    if estimated > 0 {
+        let path = path.display();
+        say(
+            "note",
+            format_args!(
+                "{path}: {estimated} of {points} normals were estimated from the neighbouring points {side}"
+            ),
+        );
+    }
+    if is_seen && estimated < points {
+        say("note", format_args!("{}: has normals, so --viewpoint has no effect", path.display()));
+    }
+}
+
+fn tell(path: &Path, notes: &[String], warning: &Option<String>) {
     for note in notes {
-        eprintln!("note: {}: {note}", path.display());
+        say("note", format_args!("{}: {note}", path.display()));
     }
     if let Some(warning) = warning {
-        eprintln!("warning: {}: {warning}", path.display());
+        say("warning", format_args!("{}: {warning}", path.display()));
     }
 }
 
@@ -66,18 +115,37 @@ const TOO_LARGE: f32 = 5.0;
 /// ... or smaller than this.
 const TOO_SMALL: f32 = 0.005;
 
-/// What the size says about the unit, if it is not one for a hand.
-fn warn_of_size(aabb: &Aabb, what: &str, option: &str) -> Option<String> {
-    let size = aabb.extents().max();
-    let (unit, scale) = match size {
-        0.0..TOO_SMALL => ("kilometres", "1000"),
-        TOO_SMALL..=TOO_LARGE => return None,
-        TOO_LARGE..=100.0 => ("centimetres", "0.01"),
-        _ => ("millimetres", "0.001"),
-    };
-    Some(format!(
-        "the {what} is {size} m large, which is no size for a hand; if it is in {unit}, say {option} {scale}"
-    ))
+impl Placement {
+    fn apply(&self, points: &mut [[f32; 3]]) {
+        for point in points {
+            *point = self.up.turn(point.map(|x| x * self.scale));
+        }
+    }
+
+    /// What the size says about the unit, if it is not one for a hand.
+    fn warn_of_size(&self, aabb: &Aabb, what: &str) -> Option<String> {
+        let size = aabb.extents().max();
+        // From 40 to 100 it may be a basket in centimetres or a hook in millimetres.
+        let (unit, factor) = match size {
+            TOO_SMALL..=TOO_LARGE => return None,
+            0.0..TOO_SMALL => ("kilometres", 1000.0),
+            TOO_LARGE..40.0 => ("centimetres", 0.01),
+            40.0..=100.0 => ("millimetres or centimetres", 0.001),
+            _ => ("millimetres", 0.001),
+        };
+        let (option, scale) = (self.scale_option, rounded(self.scale * factor));
+        let advice = match (self.scale, unit) {
+            (1.0, "millimetres or centimetres") => format!("if it is in {unit}, say {option} 0.001 or 0.01"),
+            (1.0, _) => format!("if it is in {unit}, say {option} {scale}"),
+            (wrong, _) => format!("that is with {option} {wrong}: try {option} {scale}"),
+        };
+        Some(format!("the {what} is {} m large, which is no size for a hand; {advice}", rounded(size)))
+    }
+}
+
+/// With three digits that count.
+fn rounded(x: f32) -> f32 {
+    format!("{x:.2e}").parse().unwrap_or(x)
 }
 
 #[cfg(test)]
@@ -85,14 +153,25 @@ mod tests {
     use super::*;
     use hangpose::geometry::Point;
 
+    fn warning(scale: f32, size: f32) -> Option<String> {
+        let placement = Placement { scale, up: Axis::Z, scale_option: "--scale" };
+        placement.warn_of_size(&Aabb::of(&[Point::origin(), Point::new(0.01 * size, size, 0.0)]), "mug")
+    }
+
     #[test]
     fn odd_sizes_name_the_likely_unit() {
-        let warning = |size: f32| {
-            warn_of_size(&Aabb::of(&[Point::origin(), Point::new(0.01 * size, size, 0.0)]), "mug", "--scale")
-        };
-        assert_eq!(warning(0.1), None);
-        assert!(warning(120.0).unwrap().ends_with("if it is in millimetres, say --scale 0.001"));
-        assert!(warning(12.0).unwrap().ends_with("if it is in centimetres, say --scale 0.01"));
-        assert!(warning(0.0001).unwrap().ends_with("if it is in kilometres, say --scale 1000"));
+        let end = |size| warning(1.0, size).unwrap().split_once("; ").unwrap().1.to_string();
+        assert_eq!(warning(1.0, 0.1), None);
+        assert_eq!(end(120.0), "if it is in millimetres, say --scale 0.001");
+        assert_eq!(end(12.0), "if it is in centimetres, say --scale 0.01");
+        assert_eq!(end(0.0001), "if it is in kilometres, say --scale 1000");
+        assert_eq!(end(77.0), "if it is in millimetres or centimetres, say --scale 0.001 or 0.01");
+        assert!(warning(1.0, 123.456).unwrap().starts_with("the mug is 123 m large"));
+    }
+
+    #[test]
+    fn a_wrong_scale_is_put_right() {
+        assert!(warning(1000.0, 114.0).unwrap().ends_with("with --scale 1000: try --scale 1"));
+        assert!(warning(0.001, 0.000114).unwrap().ends_with("with --scale 0.001: try --scale 1"));
     }
 }

@@ -1,33 +1,36 @@
 //! `hangpose inspect`.
 
+use super::input::{self, Placed, Placement};
 use super::json::{self, InspectedObject, InspectedSupporter};
-use super::{InspectArguments, Role, input};
+use super::{InspectArguments, Role, terminal};
 use anyhow::Result;
-use hangpose::files::{self, SupporterFile};
-use hangpose::geometry::Vector;
-use hangpose::{Monitor, analyze_object, analyze_supporter};
+use hangpose::files::{self, MeshFile, SupporterFile};
+use hangpose::geometry::{MassProperties, Vector};
+use hangpose::{CentreOfMass, Monitor, analyze_object, analyze_supporter};
 use std::process::ExitCode;
 use std::time::Instant;
 
 pub(crate) fn run(arguments: &InspectArguments) -> Result<ExitCode> {
-    let role = match arguments.role {
-        Some(role) => role,
-        None => match files::read_supporter(&arguments.file)? {
-            SupporterFile::Mesh(_) => Role::Object,
-            SupporterFile::Cloud(_) => Role::Supporter,
+    let path = &arguments.file;
+    let text = match arguments.role {
+        Some(Role::Object) => object(files::read_mesh(path)?, arguments)?,
+        Some(Role::Supporter) => supporter(files::read_supporter(path)?, arguments)?,
+        None => match files::read_supporter(path)? {
+            SupporterFile::Mesh(mesh) => object(mesh, arguments)?,
+            cloud => supporter(cloud, arguments)?,
         },
     };
-    let text = match role {
-        Role::Object => object(arguments)?,
-        Role::Supporter => supporter(arguments)?,
-    };
-    print!("{text}");
+    terminal::print(&text)?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn object(arguments: &InspectArguments) -> Result<String> {
+fn placement(arguments: &InspectArguments) -> Placement {
+    Placement { scale: arguments.scale, up: arguments.up, scale_option: "--scale" }
+}
+
+fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
     let params = arguments.method.params()?;
-    let file = input::read_object(&arguments.file, arguments.scale, arguments.up)?;
+    let Placed { shape: file, scale_warning } = input::object(&arguments.file, file, &placement(arguments))?;
     let mesh = file.mesh()?;
     let start = Instant::now();
     let mut memory = Vec::new();
@@ -39,6 +42,7 @@ fn object(arguments: &InspectArguments) -> Result<String> {
         vertices: mesh.vertices().len(),
         triangles: mesh.triangles().len(),
         extents: mesh.aabb().extents().into(),
+        scale_warning,
         mass: *object.mass(),
         centre_of_mass: object.centre_of_mass().into(),
         counts: object.counts(),
@@ -49,17 +53,23 @@ fn object(arguments: &InspectArguments) -> Result<String> {
         return Ok(json::text(&inspected));
     }
     let (mass, counts) = (object.mass(), object.counts());
-    let closed = match (mass.is_closed, mass.is_inside_out) {
-        (false, _) => "open",
-        (true, false) => "closed",
-        (true, true) => "closed but inside out, taken the other way round",
-    };
-    let mut text = format!("object, {} triangles, {closed}\n", inspected.triangles);
+    let mut text = format!("object, {} triangles, {}\n", inspected.triangles, closedness(mass));
     text += &format!("size            {} mm\n", millimetres(&mesh.aabb().extents()));
-    text += &format!("centre of mass  {} mm\n", millimetres(&object.centre_of_mass().coords));
-    if let Some(volume) = mass.volume {
-        text += &format!("volume          {:.1} cm3\n", volume * 1e6);
-    }
+    text += &scale(&inspected.scale_warning);
+    text += &format!(
+        "centre of mass  {} mm, {}\n",
+        millimetres(&object.centre_of_mass().coords),
+        match params.centre_of_mass {
+            CentreOfMass::Given(_) => "as given",
+            CentreOfMass::Volume if mass.volume_centroid.is_some() => "of the volume",
+            _ => "the mean of the surface",
+        }
+    );
+    text += &match mass.volume {
+        Some(volume) => format!("volume          {:.1} cm3\n", volume * 1e6),
+        // To the method a triangle that is turned the wrong way is a hole with a lid.
+        None => "volume          none: the mesh has gaps, or not all its triangles face outwards\n".into(),
+    };
     text += &format!("area            {:.1} cm2\n", mass.area * 1e4);
     text += &format!(
         "contact points  {}, in {} clusters, {} with free space, {} encircled, {} different\n",
@@ -81,20 +91,24 @@ fn object(arguments: &InspectArguments) -> Result<String> {
     Ok(text)
 }
 
-fn supporter(arguments: &InspectArguments) -> Result<String> {
+fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String> {
     let params = arguments.method.params()?;
-    let file = input::read_supporter(&arguments.file, arguments.scale, arguments.up, &arguments.cloud)?;
-    let cloud = file.cloud()?;
+    let (path, placement) = (&arguments.file, placement(arguments));
+    let Placed { shape: file, scale_warning } =
+        input::supporter(path, file, &placement, &arguments.cloud, params.seed)?;
+    let cloud = input::seen(&file, &arguments.cloud)?;
     let start = Instant::now();
     let mut memory = Vec::new();
     let supporter = analyze_supporter(&cloud, &params, &mut memory, &Monitor::new())?;
     let seconds = start.elapsed().as_secs_f64();
+    input::tell_of_normals(path, &supporter, &arguments.cloud);
     let extents = supporter.points().aabb().extents();
     let inspected = InspectedSupporter {
         schema: json::SCHEMA,
         role: "supporter",
         points: cloud.points().len(),
         extents: extents.into(),
+        scale_warning,
         normals_estimated: supporter.normals().estimated,
         normals_renormalised: supporter.normals().renormalised,
         counts: supporter.counts(),
@@ -110,6 +124,7 @@ fn supporter(arguments: &InspectArguments) -> Result<String> {
         inspected.points, inspected.normals_estimated, inspected.normals_renormalised
     );
     text += &format!("size            {} mm\n", millimetres(&extents));
+    text += &scale(&inspected.scale_warning);
     text += &format!(
         "contact points  {}, in {} clusters, {} of them sites\n",
         counts.contact_points, counts.clusters, counts.sites
@@ -127,6 +142,19 @@ fn supporter(arguments: &InspectArguments) -> Result<String> {
         );
     }
     Ok(text)
+}
+
+fn scale(warning: &Option<String>) -> String {
+    format!("scale           {}\n", warning.as_deref().unwrap_or("as expected of something for a hand"))
+}
+
+/// Whether the mesh bounds a volume.
+pub(super) fn closedness(mass: &MassProperties) -> &'static str {
+    match (mass.is_closed, mass.is_inside_out) {
+        (false, _) => "open",
+        (true, false) => "closed",
+        (true, true) => "closed but inside out, taken the other way round",
+    }
 }
 
 fn millimetres(v: &Vector) -> String {

@@ -80,6 +80,8 @@ pub(super) struct InspectedObject<'a> {
     pub(super) vertices: usize,
     pub(super) triangles: usize,
     pub(super) extents: [f32; 3],
+    /// What is odd about that size.
+    pub(super) scale_warning: Option<String>,
     pub(super) mass: MassProperties,
     pub(super) centre_of_mass: [f32; 3],
     pub(super) counts: HangabilityCounts,
@@ -95,6 +97,8 @@ pub(super) struct InspectedSupporter<'a> {
     pub(super) role: &'static str,
     pub(super) points: usize,
     pub(super) extents: [f32; 3],
+    /// What is odd about that size.
+    pub(super) scale_warning: Option<String>,
     pub(super) normals_estimated: usize,
     pub(super) normals_renormalised: usize,
     pub(super) counts: SupportabilityCounts,

@@ -7,25 +7,35 @@ mod output;
 mod params;
 pub(crate) mod predict;
 mod progress;
+mod terminal;
+
+pub(crate) use terminal::say;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
 /// Where and how to hang an object on a supporter: no training, no GPU.
 #[derive(Parser)]
-#[command(version, max_term_width = 100)]
+#[command(version, after_help = EXAMPLE)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
 }
 
+const EXAMPLE: &str = "Example: hangpose predict --object samples/mug.obj --supporter samples/hook.ply";
+
 #[derive(Subcommand)]
 pub(crate) enum Command {
     /// Find poses in which an object hangs on a supporter, best first.
     ///
+    /// A pose maps the object's coordinates to the supporter's, both in metres with z up: after scale and up, if they
+    /// are given.
+    ///
     /// Exit status: 0 poses were found, 3 nothing hangs (the JSON says why), 1 bad input, 2 bad usage.
     Predict(PredictArguments),
-    /// Show what the method sees in one file.
+    /// Show what the method sees in one file: size, centre of mass, and where it can be hung or hung on.
+    ///
+    /// Exit status: 0 the file was read, even if it has no site, 1 bad input, 2 bad usage.
     Inspect(InspectArguments),
 }
 
@@ -99,7 +109,7 @@ struct MethodArguments {
     /// Constants that differ from the profile's, as TOML: `radius_ratio = 0.9`.
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
-    /// Seed of the samples.
+    /// Seed of the samples; without it the params file's or 0.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
 }
@@ -110,7 +120,8 @@ struct CloudArguments {
     /// How many points a supporter that is a mesh is sampled to.
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(100..=500_000))]
     supporter_points: u32,
-    /// Where the camera stood that saw a cloud without normals, in metres in the supporter's frame.
+    /// Where the camera stood that saw a cloud without normals, in metres in the supporter's frame (after scale and
+    /// up).
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, allow_hyphen_values = true)]
     viewpoint: Option<[f32; 3]>,
 }

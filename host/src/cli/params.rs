@@ -29,7 +29,8 @@ fn overlay(profile: &Params, path: &Path) -> Result<Params> {
     let text = std::fs::read_to_string(path)
         .with_context(|| format!("{}: cannot be read; give a TOML file with constants", at()))?;
     // Read as a whole first: its errors name the line and the keys that there are.
-    let checked: Params = toml::from_str(&text).map_err(|error| anyhow!("{}: {error}", at()))?;
+    let checked: Params =
+        toml::from_str(&text).map_err(|error| anyhow!("{}: {}", at(), error.to_string().trim_end()))?;
     checked.validate().with_context(|| format!("{}: mend the value", at()))?;
     let mut merged = toml::Table::try_from(profile).context("a profile is a table")?;
     merged.extend(text.parse::<toml::Table>().with_context(at)?);

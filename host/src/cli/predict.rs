@@ -1,12 +1,18 @@
 //! `hangpose predict`.
 
+use super::input::{self, Placement};
+use super::inspect::closedness;
 use super::json::{self, PerPart, Pose, Prediction, Reason, Seconds, Stats};
 use super::output::Output;
-use super::{PredictArguments, input, progress};
-use anyhow::Result;
+use super::terminal::{self, say};
+use super::{PredictArguments, progress};
+use anyhow::{Context, Result};
+use hangpose::files;
+use hangpose::geometry::{Aabb, Mesh, Point};
 use hangpose::hanging::{self, HangingPose, Object, Supporter, predict};
 use hangpose::memory::Limits;
 use hangpose::{CentreOfMass, Monitor};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -15,25 +21,28 @@ const REJECTED: u8 = 3;
 
 pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     let start = Instant::now();
+    // What costs least comes first, so that a mistake shows at once: the constants, the place for the result, and
+    // then the object before the supporter.
     let mut params = arguments.method.params()?;
     if let Some(com) = arguments.com {
         params.centre_of_mass = CentreOfMass::Given(com);
+        params.validate().context("--com")?;
     }
-    params.validate()?;
-    let output = arguments.json.as_deref().map(Output::prepare).transpose()?;
+    let inputs = [Some(&arguments.object), Some(&arguments.supporter), arguments.method.params.as_ref()];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    let output = arguments.json.as_deref().map(|path| Output::prepare(path, &inputs)).transpose()?;
     let is_table_shown = !matches!(output, Some(Output::Standard));
 
-    let mesh = input::read_object(&arguments.object, arguments.object_scale, arguments.object_up)?;
-    let points = input::read_supporter(
-        &arguments.supporter,
-        arguments.supporter_scale,
-        arguments.supporter_up,
-        &arguments.cloud,
-    )?;
-    let mut cloud = points.cloud()?;
-    if let Some(viewpoint) = arguments.cloud.viewpoint {
-        cloud = cloud.seen_from(viewpoint)?;
-    }
+    let (scale, up) = (arguments.object_scale, arguments.object_up);
+    let placement = Placement { scale, up, scale_option: "--object-scale" };
+    let file = files::read_mesh(&arguments.object)?;
+    let mesh = input::object(&arguments.object, file, &placement)?.shape;
+    let (scale, up) = (arguments.supporter_scale, arguments.supporter_up);
+    let placement = Placement { scale, up, scale_option: "--supporter-scale" };
+    let file = files::read_supporter(&arguments.supporter)?;
+    let points =
+        input::supporter(&arguments.supporter, file, &placement, &arguments.cloud, params.seed)?.shape;
+    let cloud = input::seen(&points, &arguments.cloud)?;
     let (cloud, params) = (&cloud, &params);
     let mut seconds = Seconds { read: start.elapsed().as_secs_f64(), ..Seconds::default() };
 
@@ -71,17 +80,9 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     })?;
     seconds.total = start.elapsed().as_secs_f64();
 
-    if supporter.normals().estimated > 0 {
-        eprintln!(
-            "note: {}: {} of {} normals were estimated from the neighbouring points",
-            arguments.supporter.display(),
-            supporter.normals().estimated,
-            points.points.len(),
-        );
-    }
-    if is_table_shown {
-        print!("{}", table(&prediction, &object, &supporter));
-    }
+    input::tell_of_normals(&arguments.supporter, &supporter, &arguments.cloud);
+    warn_of_centre_of_mass(mesh, arguments);
+    let text = table(&prediction, mesh, &object, &supporter);
     if let Some(output) = output {
         let document = Prediction {
             schema: json::SCHEMA,
@@ -100,6 +101,9 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
         };
         output.write(&json::text(&document))?;
     }
+    if is_table_shown {
+        terminal::print(&text)?;
+    }
     Ok(if prediction.rejection.is_some() { ExitCode::from(REJECTED) } else { ExitCode::SUCCESS })
 }
 
@@ -110,18 +114,42 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     (result, start.elapsed().as_secs_f64())
 }
 
+/// A centre of mass outside the object's box is in another unit or another frame.
+fn warn_of_centre_of_mass(mesh: &Mesh, arguments: &PredictArguments) {
+    let (Some(com), aabb) = (arguments.com, mesh.aabb()) else { return };
+    let (offset, half) = (Point::from(com) - aabb.centre(), aabb.extents() / 2.0);
+    if (0..3).any(|i| offset[i].abs() > half[i]) {
+        let warning = "--com is outside the object; give metres in the object's frame, after scale and up";
+        say("warning", format_args!("{}: {warning}", arguments.object.display()));
+    }
+}
+
 /// The poses, or the reason why there are none, for people.
-fn table(prediction: &hanging::Prediction, object: &Object, supporter: &Supporter) -> String {
+fn table(prediction: &hanging::Prediction, mesh: &Mesh, object: &Object, supporter: &Supporter) -> String {
+    let size = |aabb: &Aabb| {
+        let [x, y, z] = <[f32; 3]>::from(aabb.extents()).map(|x| 1000.0 * x);
+        format!("{x:.0} x {y:.0} x {z:.0} mm")
+    };
+    let mut text = format!(
+        "object: {} triangles, {}, {}, {} sites; supporter: {} points, {}, {} sites\n",
+        mesh.triangles().len(),
+        closedness(object.mass()),
+        size(&mesh.aabb()),
+        object.sites().len(),
+        supporter.points().points().len(),
+        size(&supporter.points().aabb()),
+        supporter.sites().len(),
+    );
     if let Some(rejection) = &prediction.rejection {
-        return format!("nothing hangs: {}\n", rejection.stage);
+        text += &format!("nothing hangs: {}\n", rejection.stage);
+        return text;
     }
     let point = |p: &hangpose::geometry::Point| {
         let [x, y, z] = [p.x, p.y, p.z].map(|x| 1000.0 * x);
         format!("{x:8.1} {y:7.1} {z:7.1}")
     };
-    let mut text = String::from(
-        "rank    total  collision  boundary  contact area   on the supporter, mm    with the object's, mm\n",
-    );
+    text +=
+        "rank    total  collision  boundary  contact area   on the supporter, mm    with the object's, mm\n";
     for (rank, pose) in (1..).zip(prediction.poses) {
         let hanging::Cost { collision, boundary, contact_area, total } = pose.cost;
         let on = point(&supporter.sites()[pose.support_site as usize].position);

@@ -1,0 +1,200 @@
+//! Each field of the JSON: that it is there, what it is, and what it means.
+
+use super::shapes::{PEG_LENGTH, PEG_RADIUS, weighted_ring_centre_z};
+use super::*;
+
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+#[test]
+fn the_document_has_the_fields_that_programs_read() {
+    let document = Scene::new().predict(&[]);
+    assert_eq!(document["schema"], 1);
+    assert!(document["rejection"].is_null());
+    let mut found = keys(&document);
+    found.sort_unstable();
+    assert_eq!(found, ["params", "poses", "rejection", "schema", "stats"]);
+
+    let stats = &document["stats"];
+    for stage in ["read", "object", "supporter", "matching", "total"] {
+        assert!(number(&stats["seconds"][stage]) >= 0.0, "{stage}");
+    }
+    for part in ["object", "supporter"] {
+        assert!(stats["memory_bytes"][part].as_u64().unwrap() > 10_000);
+        assert!(stats["sites"][part].as_u64().unwrap() > 0);
+    }
+    assert_eq!(stats["sites"]["object"], stats["counts"]["hangability"]["sites"]);
+    assert_eq!(stats["sites"]["supporter"], stats["counts"]["supportability"]["sites"]);
+    let pairs = number(&stats["sites"]["object"]) * number(&stats["sites"]["supporter"]);
+    assert_eq!(number(&stats["counts"]["matching"]["pairs"]), pairs);
+
+    assert_eq!(document["params"]["samples"], 10_000);
+    assert_eq!(document["params"]["seed"], 0);
+}
+
+#[test]
+fn poses_are_rigid_ranked_and_bring_the_sites_together() {
+    let scene = Scene::new();
+    for (object, supporter) in [
+        (scene.ring.clone(), scene.peg.clone()),
+        (sample("mug.obj"), sample("hook.ply")),
+        (sample("scissors.obj"), sample("mug_tree.ply")),
+    ] {
+        let document = scene.predict_with(&object, &supporter, &["--top", "40"]);
+        let inspected = run!("inspect", object, "--json").json();
+        let centre_of_mass = numbers::<3>(&inspected["centre_of_mass"]);
+        let poses = document["poses"].as_array().unwrap();
+        assert!(!poses.is_empty() && poses.len() <= 40);
+        let mut last = f64::NEG_INFINITY;
+        for (rank, entry) in (1..).zip(poses) {
+            assert_eq!(entry["rank"], rank);
+            let pose = numbers::<16>(&entry["pose"]);
+            assert_is_rigid(&pose);
+            assert_agrees(&pose, numbers(&entry["position"]), numbers(&entry["quaternion_xyzw"]));
+
+            let cost = &entry["cost"];
+            let sum: f64 = ["collision", "boundary", "contact_area"].iter().map(|c| number(&cost[c])).sum();
+            assert!((number(&cost["total"]) - sum).abs() < 1e-4, "all weights are one");
+            assert!((0.5..=1.0).contains(&number(&cost["boundary"])));
+            assert!((0.0..=1.0).contains(&number(&cost["contact_area"])));
+            assert!(number(&cost["total"]) >= last, "rank {rank}");
+            last = number(&cost["total"]);
+
+            let (site, support) = (&entry["object_site"], &entry["supporter_site"]);
+            let [position, target] = [numbers(&site["position"]), numbers(&support["position"])];
+            assert!(distance(transform(&pose, position), target) < 1e-5, "rank {rank}");
+            let index = site["index"].as_u64().unwrap() as usize;
+            assert_eq!(inspected["sites"][index], *site, "as inspect says");
+
+            // Straight below, or in the hanging position itself.
+            let [x, y, z] = transform(&pose, centre_of_mass);
+            assert!((x - target[0]).hypot(y - target[1]) < 1e-5 && z < target[2] + 1e-5, "rank {rank}");
+        }
+    }
+}
+
+#[test]
+fn the_ring_hangs_on_the_middle_of_the_peg() {
+    let document = Scene::new().predict(&["--top", "1"]);
+    let [best] = &document["poses"].as_array().unwrap()[..] else { panic!("--top 1") };
+    let pose = numbers::<16>(&best["pose"]);
+
+    let site = &best["object_site"];
+    shapes::assert_is_in_the_ring(site);
+    let support = &best["supporter_site"];
+    let [x, y, z] = numbers(&support["position"]);
+    assert!(x.abs() < PEG_LENGTH / 4.0 && y.hypot(z) < 0.001, "near the middle of the peg");
+    let radius = number(&support["support_radius"]);
+    assert!((PEG_RADIUS..1.5 * PEG_RADIUS).contains(&radius), "{radius}");
+    assert_eq!(best["cost"]["collision"], 0);
+
+    // The peg goes through the ring, whose axis is y in its own frame, and the weight hangs below.
+    let [origin, tip, weight] =
+        [[0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, weighted_ring_centre_z()]].map(|p| transform(&pose, p));
+    assert!((tip[0] - origin[0]).abs() > 0.9, "{tip:?}");
+    assert!(weight[2] < -0.03, "{weight:?}");
+}
+
+fn assert_is_rigid(m: &[f64; 16]) {
+    assert_eq!(m[12..], [0.0, 0.0, 0.0, 1.0]);
+    let row = |i: usize| [m[4 * i], m[4 * i + 1], m[4 * i + 2]];
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    for i in 0..3 {
+        for j in 0..3 {
+            let expected = if i == j { 1.0 } else { 0.0 };
+            assert!((dot(row(i), row(j)) - expected).abs() < 1e-5, "{m:?}");
+        }
+    }
+    let [a, b] = [row(0), row(1)];
+    let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    assert!((dot(cross, row(2)) - 1.0).abs() < 1e-5, "no reflection");
+}
+
+fn assert_agrees(m: &[f64; 16], position: [f64; 3], [x, y, z, w]: [f64; 4]) {
+    assert_eq!([m[3], m[7], m[11]], position);
+    assert!((x * x + y * y + z * z + w * w - 1.0).abs() < 1e-5);
+    let rotation = [
+        1.0 - 2.0 * (y * y + z * z),
+        2.0 * (x * y - z * w),
+        2.0 * (x * z + y * w),
+        2.0 * (x * y + z * w),
+        1.0 - 2.0 * (x * x + z * z),
+        2.0 * (y * z - x * w),
+        2.0 * (x * z - y * w),
+        2.0 * (y * z + x * w),
+        1.0 - 2.0 * (x * x + y * y),
+    ];
+    for (k, expected) in rotation.iter().enumerate() {
+        assert!((m[k / 3 * 4 + k % 3] - expected).abs() < 1e-5, "{m:?}");
+    }
+}
+
+#[test]
+fn the_same_bytes_twice_and_on_any_number_of_threads() {
+    let scene = Scene::new();
+    let first = timeless(scene.predict(&[]));
+    assert_eq!(first, timeless(scene.predict(&[])));
+    for threads in ["1", "2", "7"] {
+        assert_eq!(first, timeless(scene.predict(&["--threads", threads])));
+    }
+}
+
+#[test]
+fn a_seed_changes_the_samples_and_nothing_else() {
+    let scene = Scene::new();
+    let sites = |seed: &str| {
+        let document = scene.predict(&["--seed", seed]);
+        assert_eq!(document["params"]["seed"].to_string(), seed);
+        document["poses"][0]["object_site"].to_string()
+    };
+    assert_eq!(sites("7"), sites("7"));
+    assert_ne!(sites("7"), sites("18446744073709551615"));
+    let mesh = scene.write("peg.obj", shapes::obj(&shapes::peg_mesh()));
+    let points = |seed: &str| run!("inspect", mesh, "--as", "supporter", "--seed", seed, "--json").json();
+    assert_ne!(points("1")["sites"], points("2")["sites"], "a supporter's mesh is sampled, too");
+}
+
+#[test]
+fn a_given_centre_of_mass_hangs_below() {
+    let given = [0.012, 0.0, -0.06];
+    let document = Scene::new().predict(&["--com", "0.012,0,-0.06", "--top", "1"]);
+    let in_params = numbers::<3>(&document["params"]["centre_of_mass"]["given"]);
+    assert!(distance(in_params, given) < 1e-6);
+    let best = &document["poses"][0];
+    let pose = numbers::<16>(&best["pose"]);
+    let hanging = numbers::<3>(&best["supporter_site"]["position"]);
+    let below = |p| transform(&pose, p);
+    let [x, y, z] = below(given);
+    assert!((x - hanging[0]).hypot(y - hanging[1]) < 1e-5 && z < hanging[2] - 0.03);
+    let [x, y, _] = below([0.0, 0.0, weighted_ring_centre_z()]);
+    assert!((x - hanging[0]).hypot(y - hanging[1]) > 0.005, "the true one is beside it");
+}
+
+#[test]
+fn profiles_and_params_files_are_told_back() {
+    let scene = Scene::new();
+    let file = scene.write("few.toml", "samples = 3000\nseed = 5\ncollision_weight = 0.5\n");
+    let document = scene.predict(&["--profile", "paper", "--params", file.to_str().unwrap(), "--seed", "6"]);
+    let params = &document["params"];
+    assert_eq!((&params["samples"], &params["seed"]), (&Value::from(3000), &Value::from(6)));
+    assert_eq!(params["collision_weight"], 0.5);
+    assert_eq!((&params["max_collision"], &params["centre_of_mass"]), (&1.0.into(), &"sample_mean".into()));
+}
+
+#[test]
+fn what_cannot_hang_is_rejected_with_a_reason() {
+    let scene = Scene::new();
+    let run = run!("predict", "--object", scene.ball, "--supporter", scene.peg, "--json", "-");
+    assert_eq!(run.status, Some(3), "{}", run.stderr);
+    let document = run.json();
+    assert_eq!(document["poses"], Value::Array(vec![]));
+    assert_eq!(document["rejection"]["stage"], "no_contact_points");
+    assert!(document["rejection"]["reason"].as_str().unwrap().contains("the object"));
+    assert_eq!(document["rejection"]["counts"], document["stats"]["counts"]);
+
+    let run = run!("predict", "--object", scene.ball, "--supporter", scene.peg);
+    assert_eq!(run.status, Some(3));
+    let reason = document["rejection"]["reason"].as_str().unwrap();
+    assert_eq!(run.stdout.lines().nth(1).unwrap(), format!("nothing hangs: {reason}"));
+}

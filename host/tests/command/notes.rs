@@ -1,0 +1,120 @@
+//! What is said beside the result, on standard error, and what becomes of odd normals and sizes.
+
+use super::shapes::{PEG_LENGTH, PEG_RADIUS, without_normals};
+use super::*;
+
+/// What is said about the ring on `supporter`, after it was seen to hang there.
+fn said(scene: &Scene, supporter: &Path, options: &[&str]) -> String {
+    let mut command = command();
+    command.args(["predict", "--top", "1", "--json", "-", "--object"]).arg(&scene.ring);
+    let run = finish(command.arg("--supporter").arg(supporter).args(options));
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+    let best = run.json()["poses"][0].clone();
+    let [x, y, z] = numbers(&best["supporter_site"]["position"]);
+    assert!(x.abs() < PEG_LENGTH / 2.0 && y.hypot(z) < PEG_RADIUS, "in the peg: {best}");
+    shapes::assert_is_in_the_ring(&best["object_site"]);
+    run.stderr
+}
+
+#[test]
+fn clean_input_needs_no_words() {
+    let scene = Scene::new();
+    assert_eq!(said(&scene, &scene.peg, &[]), "");
+    let mesh = scene.write("peg.obj", shapes::obj(&shapes::peg_mesh()));
+    assert_eq!(said(&scene, &mesh, &["--supporter-points", "4000"]), "");
+}
+
+#[test]
+fn missing_normals_are_estimated() {
+    let scene = Scene::new();
+    let points = shapes::peg();
+    let bare = scene.write("bare.xyz", shapes::xyz(&without_normals(&points)));
+    let all = format!("note: {}: {n} of {n} normals were estimated", bare.display(), n = points.len());
+    let text = said(&scene, &bare, &[]);
+    assert!(text.starts_with(&all) && text.contains("say --viewpoint"), "{text}");
+
+    // What a camera above sees: the upper half.
+    let upper: Vec<_> = points.iter().copied().filter(|p| p[5] > -0.1).collect();
+    let upper = scene.write("upper.xyz", shapes::xyz(&without_normals(&upper)));
+    let text = said(&scene, &upper, &["--viewpoint", "0,0,1"]);
+    assert!(text.contains("face the viewpoint") && text.lines().count() == 1, "{text}");
+
+    // From below nothing faces up: the viewpoint counts.
+    let run = run!("predict", "--object", scene.ring, "--supporter", upper, "--viewpoint", "0,0,-1");
+    assert_eq!(run.status, Some(3), "{}", run.stdout);
+    assert!(run.stdout.contains("no part that faces up"), "{}", run.stdout);
+    let run = run!("inspect", upper, "--viewpoint=0,0,-1", "--json");
+    assert_eq!(run.json()["sites"], Value::Array(vec![]), "inspect takes it, too");
+    assert!(run.stderr.contains("face the viewpoint"));
+
+    let text = said(&scene, &scene.peg, &["--viewpoint", "0,0,1"]);
+    assert!(text.contains("--viewpoint has no effect"), "{text}");
+}
+
+#[test]
+fn zero_and_long_normals_are_mended() {
+    let scene = Scene::new();
+    let mut points = shapes::peg();
+    points.iter_mut().step_by(10).for_each(|p| p[3..].fill(0.0));
+    points.iter_mut().skip(1).step_by(10).for_each(|p| p[3..].iter_mut().for_each(|x| *x *= 3.0));
+    let zero = points.len().div_ceil(10);
+    let long = (points.len() - 1).div_ceil(10);
+    let odd = scene.write("odd.xyz", shapes::xyz(&points));
+    let text = said(&scene, &odd, &[]);
+    for part in [
+        format!("{zero} of {} normals are zero", points.len()),
+        format!("{long} of {} normals were not of unit length and were renormalised", points.len()),
+        format!("{zero} of {} normals were estimated", points.len()),
+    ] {
+        assert!(text.contains(&part), "{part} in {text}");
+    }
+    assert!(text.lines().all(|line| line.starts_with("note: ") && line.contains("odd.xyz")), "{text}");
+}
+
+#[test]
+fn sizes_for_no_hand_name_the_likely_unit() {
+    let scene = Scene::new();
+    let scaled = |factor: f64| {
+        let (mut vertices, triangles) = shapes::weighted_ring();
+        vertices.iter_mut().flatten().for_each(|x| *x *= factor);
+        scene.write("scaled.obj", shapes::obj(&(vertices, triangles)))
+    };
+    for (factor, unit, scale) in
+        [(1000.0, "millimetres", "0.001"), (100.0, "centimetres", "0.01"), (0.001, "kilometres", "1000")]
+    {
+        let path = scaled(factor);
+        let text = run!("predict", "--object", path, "--supporter", scene.peg).stderr;
+        let end = format!("if it is in {unit}, say --object-scale {scale}\n");
+        assert!(
+            text.starts_with("warning: ") && text.contains("scaled.obj") && text.ends_with(&end),
+            "{text}"
+        );
+        assert!(run!("inspect", path).stderr.ends_with(&format!("say --scale {scale}\n")));
+    }
+    let text =
+        run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--supporter-scale", "2000").stderr;
+    assert!(
+        text.contains("peg.xyz: the supporter is 200 m large") && text.ends_with("try --supporter-scale 2\n")
+    );
+}
+
+#[test]
+fn a_centre_of_mass_outside_the_object_is_odd() {
+    let scene = Scene::new();
+    let with =
+        |com: &str| run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--com", com).stderr;
+    assert_eq!(with("0,0,-0.07"), "");
+    let text = with("0,0,-70");
+    assert!(text.contains("warning: ") && text.contains("--com is outside the object"), "{text}");
+}
+
+#[test]
+fn changes_to_a_mesh_are_told() {
+    let scene = Scene::new();
+    let text = shapes::obj(&shapes::weighted_ring()) + "v 9 9 9\nf 1 1 1\n";
+    let odd = scene.write("odd.obj", text);
+    let run = run!("inspect", odd);
+    assert_eq!(run.status, Some(0));
+    assert!(run.stderr.contains("1 of 2313 vertices belong to no face"), "{}", run.stderr);
+    assert!(run.stderr.contains("1 of 4621 faces had repeated vertices"), "{}", run.stderr);
+}

@@ -1,0 +1,86 @@
+//! The command line itself, and the table for people.
+
+use super::*;
+
+#[test]
+fn wrong_usage_has_its_own_status() {
+    let scene = Scene::new();
+    let (ring, peg) = (scene.ring.to_str().unwrap(), scene.peg.to_str().unwrap());
+    let predict = ["predict", "--object", ring, "--supporter", peg];
+    for options in [
+        ["--top", "0"],
+        ["--top", "many"],
+        ["--threads", "0"],
+        ["--seed", "1.5"],
+        ["--com", "1,2"],
+        ["--com", "1,2,inf"],
+        ["--viewpoint", "here"],
+        ["--object-scale", "0"],
+        ["--supporter-scale", "nan"],
+        ["--object-up", "w"],
+        ["--supporter-points", "3"],
+        ["--profile", "best"],
+        ["--colour", "red"],
+    ] {
+        let run = finish(command().args(predict).args(options));
+        assert_eq!((run.status, run.stdout.as_str()), (Some(2), ""), "{options:?}");
+        assert!(run.stderr.contains(options[0]), "{}", run.stderr);
+    }
+    for arguments in
+        [&[][..], &["hang"], &["predict", "--object", ring], &["inspect"], &["inspect", ring, peg]]
+    {
+        assert_eq!(finish(command().args(arguments)).status, Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn help_tells_of_every_option_and_status() {
+    let run = run!("--help");
+    assert_eq!(run.status, Some(0));
+    assert!(["predict", "inspect", "Example: hangpose predict"].iter().all(|part| run.stdout.contains(part)));
+    let help = run!("predict", "--help").stdout;
+    for option in
+        ["object", "supporter", "profile", "top", "seed", "com", "json", "params", "threads", "viewpoint"]
+    {
+        assert!(help.contains(&format!("--{option} <")), "{option}");
+    }
+    assert!(help.contains("Exit status: 0") && run!("inspect", "--help").stdout.contains("Exit status: 0"));
+    assert!(run!("--version").stdout.starts_with("hangpose "));
+}
+
+#[test]
+fn the_table_says_what_was_read_and_agrees_with_the_json() {
+    let scene = Scene::new();
+    let run = run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--top", "4");
+    // No progress bar either: standard error is no terminal here.
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    let document = scene.predict(&["--top", "4"]);
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    let sites = &document["stats"]["sites"];
+    let (_, triangles) = shapes::weighted_ring();
+    assert_eq!(
+        lines[0],
+        format!(
+            "object: {} triangles, closed, 68 x 8 x 154 mm, {} sites; supporter: {} points, 100 x 8 x 8 mm, {} sites",
+            triangles.len(),
+            sites["object"],
+            shapes::peg().len(),
+            sites["supporter"],
+        )
+    );
+    assert!(lines[1].trim_start().starts_with("rank    total"));
+    let poses = document["poses"].as_array().unwrap();
+    assert_eq!(lines.len(), 2 + poses.len());
+    for (line, pose) in lines[2..].iter().zip(poses) {
+        let row: Vec<f64> = line.split_whitespace().map(|word| word.parse().unwrap()).collect();
+        let cost = &pose["cost"];
+        let [x, y, z] = numbers::<3>(&pose["supporter_site"]["position"]).map(|x| 1000.0 * x);
+        let [u, v, w] = numbers::<3>(&pose["object_site"]["position"]).map(|x| 1000.0 * x);
+        let [total, collision, boundary, area] =
+            ["total", "collision", "boundary", "contact_area"].map(|name| number(&cost[name]));
+        let expected = [number(&pose["rank"]), total, collision, boundary, area, x, y, z, u, v, w];
+        assert_eq!(row.len(), expected.len(), "{line}");
+        // As many digits as are shown.
+        assert!(row.iter().zip(expected).all(|(shown, value)| (shown - value).abs() < 0.051), "{line}");
+    }
+}
