@@ -109,7 +109,11 @@ fn align(
     up: Vector,
     is_reversed: bool,
 ) -> Pose {
-    let down = unit_or(centre_of_mass - object.position, unit_or(centre_of_mass - object.contact_point, -up));
+    // Where the hanging position is the centre of mass itself, the contact point still says what is up.
+    let from_contact = centre_of_mass - object.contact_point;
+    let below = centre_of_mass - object.position;
+    let below = if below.norm() > 1e-3 * from_contact.norm() { below } else { from_contact };
+    let down = unit_or(below, -up);
     // The hanging direction is perpendicular to down but for rounding.
     let along = object.hanging_direction - down * object.hanging_direction.dot(&down);
     let object_frame = frame(unit_or(along, any_perpendicular(down)), down);
