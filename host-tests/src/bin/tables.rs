@@ -1,0 +1,94 @@
+//! Predicts poses for many pairs, drops them in Bullet and ODE, and writes the tables.
+
+use anyhow::{Context, Result};
+use clap::{Parser, ValueEnum};
+use hangpose::Params;
+use host_tests::tables::run::{Engines, run};
+use host_tests::tables::{case, real, report};
+use indicatif::ProgressBar;
+use std::path::PathBuf;
+
+#[derive(Parser)]
+#[command(about)]
+struct Arguments {
+    /// Profiles, with commas between them.
+    #[arg(long, value_delimiter = ',', default_value = "paper,default")]
+    profile: Vec<Profile>,
+    /// Pairs that fit, made by the shape library; a quarter as many that cannot hang come on top.
+    #[arg(long, default_value_t = 600)]
+    pairs: usize,
+    /// Seed of the sizes.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Who judges; the tables are Bullet's, and ODE is asked about the best pose.
+    #[arg(long, value_enum, default_value_t = Engine::Both)]
+    engine: Engine,
+    /// A folder of real meshes with a manifest.json, judged as well.
+    #[arg(long, value_name = "DIR")]
+    meshes: Option<PathBuf>,
+    /// Pairs of real meshes at most.
+    #[arg(long, default_value_t = 200)]
+    real_pairs: usize,
+    /// Where the tables go.
+    #[arg(long, value_name = "FILE", default_value = "docs/RESULTS.md")]
+    out: PathBuf,
+    /// Where each row goes as it comes, a line of JSON each.
+    #[arg(long, value_name = "FILE", default_value = "build/tables.jsonl")]
+    json: PathBuf,
+    /// Keep the rows that the JSON file has, instead of beginning anew.
+    #[arg(long)]
+    resume: bool,
+    /// How many pairs at once.
+    #[arg(long, default_value_t = std::thread::available_parallelism().map_or(1, Into::into))]
+    threads: usize,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Profile {
+    Paper,
+    Default,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Engine {
+    Bullet,
+    Both,
+}
+
+fn main() -> Result<()> {
+    let arguments = Arguments::parse();
+    for file in [&arguments.out, &arguments.json] {
+        if let Some(folder) = file.parent() {
+            std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+        }
+    }
+    if !arguments.resume && arguments.json.exists() {
+        std::fs::remove_file(&arguments.json).with_context(|| arguments.json.display().to_string())?;
+    }
+    let profiles: Vec<(String, Params)> = arguments
+        .profile
+        .iter()
+        .map(|profile| match profile {
+            Profile::Paper => ("paper".into(), Params::paper()),
+            Profile::Default => ("default".into(), Params::default()),
+        })
+        .collect();
+    let engines = Engines { ode: arguments.engine == Engine::Both };
+    let work = |cases: &[case::Case]| {
+        let bar = ProgressBar::new(0);
+        let tell = |done, all| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+        };
+        run(cases, &profiles, engines, arguments.threads, &arguments.json, tell)
+    };
+    let made = work(&case::made(arguments.pairs, arguments.seed))?;
+    let mut text = report::heading(&made);
+    text += &report::tables("Made pairs", &made);
+    if let Some(folder) = &arguments.meshes {
+        text += &report::tables("Real meshes", &work(&real::real(folder, arguments.real_pairs)?)?);
+    }
+    std::fs::write(&arguments.out, text).with_context(|| arguments.out.display().to_string())?;
+    println!("{}", arguments.out.display());
+    Ok(())
+}

@@ -1,0 +1,60 @@
+//! Pictures of a pose at release and at rest, side by side, so that a person sees what a verdict means.
+
+use crate::solid::Solid;
+use hangpose::geometry::Pose;
+use hangpose::parry::pose_to_parry;
+use image::{Rgb, RgbImage};
+use parry3d::math;
+use parry3d::query::{Ray, RayCast};
+use parry3d::shape::TriMesh;
+use std::path::Path;
+
+/// Pixels along the side of each of the two pictures.
+const SIDE: u32 = 320;
+/// Where the eye is, seen from the supporter: in front of the wall, to the side and above.
+const EYE: [f32; 3] = [0.75, -0.55, 0.37];
+const BACKGROUND: Rgb<u8> = Rgb([255, 255, 255]);
+const OBJECT: [f32; 3] = [0.85, 0.45, 0.20];
+const SUPPORTER: [f32; 3] = [0.45, 0.50, 0.60];
+
+/// Writes a PNG with the object at `release` on the left and at `rest` on the right.
+pub fn write(path: &Path, object: &Solid, supporter: &Solid, release: &Pose, rest: &Pose) -> image::ImageResult<()> {
+    let [object, supporter] = [object, supporter].map(mesh_of);
+    let mut picture = RgbImage::from_pixel(2 * SIDE, SIDE, BACKGROUND);
+    for (column, pose) in [(0, release), (SIDE, rest)] {
+        draw(&mut picture, column, &object, &supporter, &pose_to_parry(pose));
+    }
+    picture.save(path)
+}
+
+fn mesh_of(solid: &Solid) -> TriMesh {
+    let vertices = solid.vertices.iter().map(|&v| v.into()).collect();
+    TriMesh::new(vertices, solid.triangles.clone()).expect("a shape has triangles")
+}
+
+/// Draws what one sees from far away into the square that begins at `column`.
+fn draw(picture: &mut RgbImage, column: u32, object: &TriMesh, supporter: &TriMesh, pose: &math::Pose) {
+    let identity = math::Pose::IDENTITY;
+    let back = math::Vector::from_array(EYE).normalize();
+    let right = math::Vector::Z.cross(back).normalize();
+    let up = back.cross(right);
+    let aabb = supporter.aabb(&identity);
+    let (centre, reach) = (aabb.center(), 0.5 * aabb.extents().length() + object.local_aabb().extents().length());
+    let reach = reach.min(0.6);
+    for y in 0..SIDE {
+        for x in 0..SIDE {
+            let [u, v] = [x, y].map(|k| (2.0 * (k as f32 + 0.5) / SIDE as f32 - 1.0) * reach);
+            let ray = Ray::new(centre + right * u - up * v + back * 3.0, -back);
+            let hit = |mesh: &TriMesh, pose: &math::Pose, colour: [f32; 3]| {
+                let hit = mesh.cast_ray_and_get_normal(pose, &ray, 6.0, false)?;
+                Some((hit.time_of_impact, hit.normal.dot(back).abs(), colour))
+            };
+            let hits = [hit(object, pose, OBJECT), hit(supporter, &identity, SUPPORTER)];
+            let nearest = hits.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((_, light, colour)) = nearest {
+                let shade = colour.map(|c| (255.0 * c * (0.35 + 0.65 * light)) as u8);
+                picture.put_pixel(column + x, y, Rgb(shade));
+            }
+        }
+    }
+}

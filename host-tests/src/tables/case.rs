@@ -1,0 +1,63 @@
+//! The pairs: made by the shape library from a seed, or real ones from a folder of meshes.
+
+use crate::shapes::{OBJECTS, ObjectKind, Random, SUPPORTERS, fits};
+use crate::solid::Solid;
+use std::sync::Arc;
+
+/// An object and a supporter, and whether they go together.
+pub struct Case {
+    /// Names the pair; the same in every run with the same seed.
+    pub name: String,
+    /// Seed of the samples.
+    pub seed: u64,
+    /// Kind of the object.
+    pub object_kind: String,
+    /// Kind of the supporter.
+    pub supporter_kind: String,
+    /// Whether the object can hang on the supporter, by geometry or by the manifest.
+    pub fits: bool,
+    /// The object.
+    pub object: Arc<Solid>,
+    /// The supporter.
+    pub supporter: Arc<Solid>,
+}
+
+/// Sizes are drawn anew so often until a pair fits; then the pair is taken with another supporter.
+const TRIES: u64 = 30;
+
+/// `pairs` pairs that fit, every hangable kind of object and every kind of supporter in turn, and a quarter as many
+/// that cannot hang.
+pub fn made(pairs: usize, seed: u64) -> Vec<Case> {
+    let kinds = |is_hangable| OBJECTS.iter().filter(move |kind| kind.is_hangable == is_hangable).collect::<Vec<_>>();
+    let (hangable, unhangable) = (kinds(true), kinds(false));
+    let mut cases = Vec::new();
+    let mut turn = 0;
+    while cases.len() < pairs {
+        let object = hangable[turn % hangable.len()];
+        // One supporter further with each round through the objects, so that all meet all.
+        let supporter = turn / hangable.len() + turn;
+        cases.extend((0..TRIES).find_map(|k| made_case(object, supporter, seed, turn as u64 * TRIES + k, true)));
+        turn += 1;
+    }
+    let unhangable_pairs = (0..pairs / 4).filter_map(|turn| {
+        made_case(unhangable[turn % unhangable.len()], turn / unhangable.len() + turn, seed, turn as u64, false)
+    });
+    cases.extend(unhangable_pairs);
+    cases
+}
+
+/// The pair with these sizes, if it fits as asked.
+fn made_case(object: &ObjectKind, supporter: usize, seed: u64, draw: u64, should_fit: bool) -> Option<Case> {
+    let supporter = &SUPPORTERS[supporter % SUPPORTERS.len()];
+    let sizes = seed << 32 | draw;
+    let made = ((object.make)(&mut Random::new(2 * sizes)), (supporter.make)(&mut Random::new(2 * sizes + 1)));
+    (fits(&made.0, &made.1) == should_fit).then(|| Case {
+        name: format!("{}-{}-{seed}-{draw}", object.name, supporter.name),
+        seed: draw,
+        object_kind: object.name.into(),
+        supporter_kind: supporter.name.into(),
+        fits: should_fit,
+        object: Arc::new(made.0.solid),
+        supporter: Arc::new(made.1.solid),
+    })
+}

@@ -1,0 +1,7 @@
+//! Predicts poses for many pairs, drops them, and says in tables what became of them.
+
+pub mod case;
+pub mod real;
+pub mod report;
+pub mod row;
+pub mod run;

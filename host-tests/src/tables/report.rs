@@ -1,0 +1,138 @@
+//! The tables, as Markdown.
+
+use super::row::{Failure, Outcome, Row};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// `successes` of `trials` in percent, with the 95 % interval of Wilson (1927).
+pub fn wilson(successes: usize, trials: usize) -> String {
+    if trials == 0 {
+        return "–".into();
+    }
+    let [low, high] = wilson_interval(successes, trials).map(|p| 100.0 * p);
+    format!("{:.0} ({low:.0}–{high:.0})", 100.0 * successes as f64 / trials as f64)
+}
+
+fn wilson_interval(successes: usize, trials: usize) -> [f64; 2] {
+    let z = 1.959_964;
+    let (n, p) = (trials as f64, successes as f64 / trials as f64);
+    let middle = p + z * z / (2.0 * n);
+    let reach = z * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
+    [middle - reach, middle + reach].map(|bound| (bound / (1.0 + z * z / n)).clamp(0.0, 1.0))
+}
+
+/// What the tables are and which command printed them.
+pub fn heading(rows: &[Row]) -> String {
+    format!(
+        "# Results\n\nPrinted by `make tables`; {} rows of made pairs. Success, robust and the other words are those of the \
+         definition of hanging in `host-tests/src/judge/verdict.rs`: percent, with Wilson's 95 % interval. \"Top 5\" and \
+         \"top 10\" ask whether any of so many poses hangs. All judgements are Bullet's unless ODE is named.\n\n",
+        rows.len()
+    )
+}
+
+/// All tables for the rows of one kind of pairs, profile beside profile.
+pub fn tables(title: &str, rows: &[Row]) -> String {
+    let mut text = format!("## {title}\n\n");
+    let mut profiles: Vec<&str> = rows.iter().map(|row| row.profile.as_str()).collect();
+    profiles.dedup();
+    for profile in profiles {
+        let rows: Vec<&Row> = rows.iter().filter(|row| row.profile == profile).collect();
+        let (fits, rest): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(|row| row.fits);
+        let _ = writeln!(text, "### Profile `{profile}`\n");
+        text += &by("object", &fits, |row| &row.object);
+        text += &by("supporter", &fits, |row| &row.supporter);
+        if !rest.is_empty() {
+            let rejected = rest.iter().filter(|row| row.rejection.is_some()).count();
+            let _ = writeln!(text, "Pairs that cannot hang: {}; rejected, %: {}.\n", rest.len(), wilson(rejected, rest.len()));
+        }
+        let mut seconds: Vec<f64> = rows.iter().map(|row| row.seconds).collect();
+        seconds.sort_by(f64::total_cmp);
+        if let Some(median) = seconds.get(seconds.len() / 2) {
+            let _ = writeln!(text, "Seconds per prediction, median: {median:.3}; slowest: {:.3}.\n", seconds[seconds.len() - 1]);
+        }
+        text += &agreement(&fits);
+        text += &failures(&fits);
+    }
+    text
+}
+
+/// A line for each value of `key`, and one for all.
+fn by<'r>(name: &str, rows: &[&'r Row], key: impl Fn(&'r Row) -> &'r String) -> String {
+    let mut groups: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
+    for row in rows {
+        groups.entry(key(row)).or_default().push(row);
+    }
+    let mut text = format!("| {name} | pairs | found | success | robust | top 5 | top 10 |\n|---|--:|--:|--:|--:|--:|--:|\n");
+    for (name, rows) in groups.into_iter().chain([("**all**", rows.to_vec())]) {
+        let count = |holds: &dyn Fn(&Row) -> bool| rows.iter().filter(|row| holds(row)).count();
+        let first = |row: &Row, holds: fn(&Outcome) -> bool| row.first().is_some_and(holds);
+        let columns = [
+            count(&|row| !row.bullet.is_empty()),
+            count(&|row| first(row, Outcome::success)),
+            count(&|row| first(row, |outcome| outcome.success() && outcome.robust)),
+            count(&|row| row.succeeds_within(5)),
+            count(&|row| row.succeeds_within(10)),
+        ];
+        let cells: Vec<String> = columns.iter().map(|&k| wilson(k, rows.len())).collect();
+        let _ = writeln!(text, "| {name} | {} | {} |", rows.len(), cells.join(" | "));
+    }
+    text + "\n"
+}
+
+fn agreement(rows: &[&Row]) -> String {
+    let both: Vec<(&Outcome, &Outcome)> =
+        rows.iter().filter_map(|row| Some((row.first()?, row.ode.as_ref()?))).collect();
+    if both.is_empty() {
+        return String::new();
+    }
+    let agree = both.iter().filter(|(a, b)| a.success() == b.success()).count();
+    let ode = both.iter().filter(|(_, b)| b.success()).count();
+    let bullet = both.iter().filter(|(a, _)| a.success()).count();
+    format!(
+        "Of {} best poses judged by both engines Bullet and ODE agree on success in {} %; success in Bullet {} %, in ODE {} %.\n\n",
+        both.len(),
+        wilson(agree, both.len()),
+        wilson(bullet, both.len()),
+        wilson(ode, both.len()),
+    )
+}
+
+/// Why best poses failed, and the commonest pairs of kinds for which they did.
+fn failures(rows: &[&Row]) -> String {
+    let mut causes: BTreeMap<Failure, usize> = BTreeMap::new();
+    let mut places: BTreeMap<(Failure, &str, &str), usize> = BTreeMap::new();
+    for row in rows {
+        if let Some(cause) = row.failure() {
+            *causes.entry(cause).or_default() += 1;
+            *places.entry((cause, &row.object, &row.supporter)).or_default() += 1;
+        }
+    }
+    let mut text = String::from("| cause of failure | pairs | what would mend it |\n|---|--:|---|\n");
+    for (cause, count) in &causes {
+        let _ = writeln!(text, "| {} | {count} | {} |", cause.name(), cause.remedy());
+    }
+    let mut places: Vec<_> = places.into_iter().collect();
+    places.sort_by_key(|(place, count)| (std::cmp::Reverse(*count), *place));
+    text += "\nThe twenty commonest failures:\n\n| cause | object | supporter | pairs |\n|---|---|---|--:|\n";
+    for ((cause, object, supporter), count) in places.into_iter().take(20) {
+        let _ = writeln!(text, "| {} | {object} | {supporter} | {count} |", cause.name());
+    }
+    text + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wilson_intervals_as_published() {
+        // Newcombe 1998, "Two-sided confidence intervals for the single proportion", table I, method 3.
+        for (successes, trials, low, high) in
+            [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)]
+        {
+            let [l, h] = wilson_interval(successes, trials);
+            assert!((l - low).abs() < 1e-4 && (h - high).abs() < 1e-4, "{successes}/{trials}: {l} {h}");
+        }
+    }
+}

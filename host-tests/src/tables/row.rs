@@ -1,0 +1,150 @@
+//! What became of one pair under one profile: a line of the record that a run writes and resumes from.
+
+use crate::judge::Verdict;
+use serde::{Deserialize, Serialize};
+
+/// One pair under one profile.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Row {
+    /// Names the pair; the same in every run with the same seed.
+    pub pair: String,
+    /// `paper` or `default`.
+    pub profile: String,
+    /// Kind of the object.
+    pub object: String,
+    /// Kind of the supporter.
+    pub supporter: String,
+    /// Whether the pair can hang, by geometry or by the manifest.
+    pub fits: bool,
+    /// Why nothing was predicted, if nothing was.
+    pub rejection: Option<String>,
+    /// Seconds from the models' inputs to the poses, one thread.
+    pub seconds: f64,
+    /// What Bullet says of the best poses, best first, up to the first that succeeds.
+    pub bullet: Vec<Outcome>,
+    /// What ODE says of the best pose, if it was asked.
+    pub ode: Option<Outcome>,
+}
+
+/// What a judge says of one pose.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Outcome {
+    /// Nothing deeper than 2 mm inside at the release.
+    pub clear: bool,
+    /// It stays.
+    pub holds: bool,
+    /// It falls when gravity is reversed.
+    pub honest: bool,
+    /// It stays when gravity is tilted.
+    pub robust: bool,
+    /// Deepest penetration at the release, metres.
+    pub penetration: f32,
+    /// How far the centre of mass sank, metres.
+    pub sank: f32,
+    /// How far the object turned, radians.
+    pub turned: f32,
+}
+
+impl Outcome {
+    /// DESIGN's success: clear, holds and honest.
+    pub fn success(&self) -> bool {
+        self.clear && self.holds && self.honest
+    }
+
+    /// Why it failed, if it did.
+    pub fn failure(&self) -> Option<Failure> {
+        if !self.clear {
+            Some(Failure::Penetration)
+        } else if !self.holds && self.turned > ROTATED_OFF {
+            Some(Failure::RotatedOff)
+        } else if !self.holds {
+            Some(Failure::SlidOff)
+        } else if !self.honest {
+            Some(Failure::Wedged)
+        } else {
+            None
+        }
+    }
+}
+
+impl From<&Verdict> for Outcome {
+    fn from(verdict: &Verdict) -> Self {
+        let Verdict { clear, holds, honest, robust, figures } = verdict;
+        Self {
+            clear: *clear,
+            holds: *holds,
+            honest: *honest,
+            robust: *robust,
+            penetration: figures.penetration as f32,
+            sank: figures.sank as f32,
+            turned: figures.turned as f32,
+        }
+    }
+}
+
+/// An object that falls and has turned by more than this, radians, is said to have rotated off.
+const ROTATED_OFF: f32 = 0.7;
+
+/// Why the best pose of a pair that fits does not hang.
+#[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
+pub enum Failure {
+    /// The object or the supporter has no site.
+    NoSite,
+    /// There are sites, but none goes with another.
+    NoMatch,
+    /// The pose runs through the supporter.
+    Penetration,
+    /// It fell and kept its orientation.
+    SlidOff,
+    /// It fell and turned.
+    RotatedOff,
+    /// It is stuck in the supporter.
+    Wedged,
+}
+
+impl Failure {
+    /// As the tables name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NoSite => "no site",
+            Self::NoMatch => "no match",
+            Self::Penetration => "penetration",
+            Self::SlidOff => "slid off",
+            Self::RotatedOff => "rotated off",
+            Self::Wedged => "wedged",
+        }
+    }
+
+    /// What would mend it.
+    pub fn remedy(self) -> &'static str {
+        match self {
+            Self::NoSite => "more candidate sites: smaller clusters, rims and domes, pegs steeper than alpha_s",
+            Self::NoMatch => "test the real section against the hole instead of a bounding sphere; more yaws",
+            Self::Penetration => "move the pose out along the signed distance before it is given",
+            Self::SlidOff => "let gravity act before the answer; choose sites in the hook's valley",
+            Self::RotatedOff => "let gravity act before the answer; centre of mass under the contact",
+            Self::Wedged => "reject poses whose way out is blocked",
+        }
+    }
+}
+
+impl Row {
+    /// What Bullet says of the best pose.
+    pub fn first(&self) -> Option<&Outcome> {
+        self.bullet.first()
+    }
+
+    /// Whether one of the best `count` poses succeeds.
+    pub fn succeeds_within(&self, count: usize) -> bool {
+        self.bullet.iter().take(count).any(Outcome::success)
+    }
+
+    /// Why the best pose failed, if it did.
+    pub fn failure(&self) -> Option<Failure> {
+        match (self.first(), self.rejection.as_deref()) {
+            (Some(outcome), _) => outcome.failure(),
+            (None, Some("TooThick" | "AllCollide")) => Some(Failure::NoMatch),
+            (None, _) => Some(Failure::NoSite),
+        }
+    }
+}
