@@ -26,6 +26,11 @@ missing=()
 # The linker for the host, and readelf and size for the archive.
 command -v cc >/dev/null || missing+=(gcc libc6-dev)
 command -v readelf >/dev/null || missing+=(binutils)
+# The physics engines that judge poses, and what compiles and finds them.
+command -v c++ >/dev/null || missing+=(g++)
+command -v pkg-config >/dev/null || missing+=(pkg-config)
+pkg-config --exists bullet 2>/dev/null || missing+=(libbullet-dev)
+pkg-config --exists ode 2>/dev/null || missing+=(libode-dev)
 
 if command -v rustup >/dev/null; then
     have=$(rustup component list --installed)

@@ -1,0 +1,44 @@
+//! Compiles the shims over the two physics engines. They are optimised in every profile: judging is all waiting for them.
+
+fn main() {
+    let mut missing = Vec::new();
+    for (library, minimum, package) in [("bullet", "3.0", "libbullet-dev"), ("ode", "0.16", "libode-dev")] {
+        // The libraries are linked after the shims that need them: further down.
+        match pkg_config::Config::new().atleast_version(minimum).cargo_metadata(false).probe(library) {
+            Ok(found) => compile(library, &found),
+            Err(error) => missing.push((package, error)),
+        }
+    }
+    if !missing.is_empty() {
+        for (package, error) in &missing {
+            eprintln!("{package}: {error}");
+        }
+        let packages: Vec<_> = missing.iter().map(|(package, _)| *package).collect();
+        eprintln!("host-tests needs Debian's {} and pkg-config: `make setup` installs them", packages.join(" and "));
+        std::process::exit(1);
+    }
+    println!("cargo::rerun-if-changed=src/judge/engine.h");
+    println!("cargo::rerun-if-changed=build.rs");
+}
+
+fn compile(library: &str, found: &pkg_config::Library) {
+    let source = format!("src/judge/{library}.cpp");
+    println!("cargo::rerun-if-changed={source}");
+    let mut build = cc::Build::new();
+    build.cpp(true).std("c++17").opt_level(2).warnings(true).file(&source);
+    for path in &found.include_paths {
+        // As system headers, after the compiler's own: their warnings are none of ours.
+        build.flag("-idirafter").flag(path);
+    }
+    // Such as the precision with which ODE was built.
+    for (name, value) in &found.defines {
+        build.define(name, value.as_deref());
+    }
+    build.compile(&format!("judge_{library}"));
+    for path in &found.link_paths {
+        println!("cargo::rustc-link-search=native={}", path.display());
+    }
+    for name in &found.libs {
+        println!("cargo::rustc-link-lib={name}");
+    }
+}

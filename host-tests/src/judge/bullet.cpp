@@ -1,0 +1,186 @@
+// Bullet behind the interface of engine.h: convex parts against convex parts.
+#include "engine.h"
+
+#include <btBulletDynamicsCommon.h>
+#include <LinearMath/btConvexHullComputer.h>
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace {
+
+// Bullet's own tolerances are absolute and meant for metres, so the world is simulated in centimetres.
+constexpr double SCALE = 100;
+constexpr btScalar MARGIN = btScalar(0.0002 * SCALE);
+constexpr btScalar BREAKING = btScalar(0.001 * SCALE);
+constexpr btScalar TOUCHING = btScalar(0.0005 * SCALE);
+
+btVector3 vector(const double* v, double scale = 1) {
+    return {btScalar(v[0] * scale), btScalar(v[1] * scale), btScalar(v[2] * scale)};
+}
+
+btVector3 scaled(const double* v) { return vector(v, SCALE); }
+
+struct Deepest : btCollisionWorld::ContactResultCallback {
+    btScalar distance = 0;
+    btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+        distance = std::min(distance, point.getDistance());
+        return 0;
+    }
+};
+
+struct World {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    btDbvtBroadphase broadphase;
+    btSequentialImpulseConstraintSolver solver;
+    btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+    btCompoundShape compound;
+    std::vector<std::unique_ptr<btCollisionShape>> shapes;
+    std::vector<std::unique_ptr<btCollisionObject>> fixed;
+    std::unique_ptr<btRigidBody> body;
+    btScalar time_step, friction;
+
+    explicit World(const Setup& setup) : time_step(btScalar(setup.time_step)), friction(btScalar(setup.friction)) {
+        static std::once_flag once;
+        std::call_once(once, [] { gContactBreakingThreshold = BREAKING; });
+        dispatcher.setDispatcherFlags(dispatcher.getDispatcherFlags() &
+                                      ~btCollisionDispatcher::CD_USE_RELATIVE_CONTACT_BREAKING_THRESHOLD);
+        world.setForceUpdateAllAabbs(false);
+        btContactSolverInfo& info = world.getSolverInfo();
+        info.m_splitImpulsePenetrationThreshold = 0;  // overlap is pushed apart without gaining speed
+        info.m_restitutionVelocityThreshold *= btScalar(SCALE);
+        // Friction in two fixed directions; the default single one follows the slip and creeps when there is none.
+        info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+        btRigidBody::btRigidBodyConstructionInfo of_body(static_cast<btScalar>(setup.mass), nullptr, &compound,
+                                                         vector(setup.inertia, SCALE * SCALE));
+        of_body.m_friction = friction;  // Bullet multiplies the two: the fixed shapes have 1
+        body = std::make_unique<btRigidBody>(of_body);
+        body->setActivationState(DISABLE_DEACTIVATION);
+    }
+
+    ~World() {
+        if (body->getBroadphaseHandle()) world.removeRigidBody(body.get());
+        for (auto& object : fixed) world.removeCollisionObject(object.get());
+    }
+
+    void add(bool to_body, std::unique_ptr<btCollisionShape> shape, const btTransform& pose) {
+        if (to_body) {
+            compound.addChildShape(pose, shape.get());
+        } else {
+            auto object = std::make_unique<btCollisionObject>();
+            object->setCollisionShape(shape.get());
+            object->setWorldTransform(pose);
+            object->setFriction(1);
+            world.addCollisionObject(object.get(), btBroadphaseProxy::StaticFilter,
+                                     btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);
+            fixed.push_back(std::move(object));
+        }
+        shapes.push_back(std::move(shape));
+    }
+
+    bool touching() {
+        for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+            const btPersistentManifold* manifold = dispatcher.getManifoldByIndexInternal(i);
+            for (int j = 0; j < manifold->getNumContacts(); ++j)
+                if (manifold->getContactPoint(j).getDistance() <= TOUCHING) return true;
+        }
+        return false;
+    }
+};
+
+World& of(void* world) { return *static_cast<World*>(world); }
+
+void* create(const Setup* setup) { return new World(*setup); }
+
+void destroy(void* world) { delete static_cast<World*>(world); }
+
+// The margin rounds a hull off outwards, so the hull is made smaller by as much first.
+void add_hull(void* world, bool body, const double* points, size_t count) {
+    std::vector<btVector3> all;
+    btVector3 middle(0, 0, 0);
+    for (size_t i = 0; i < count; ++i) all.push_back(scaled(points + 3 * i));
+    for (const btVector3& point : all) middle += point / btScalar(count);
+    for (btVector3& point : all) point -= middle;
+    btConvexHullComputer hull;
+    btScalar shrunk = hull.compute(all[0].m_floats, sizeof(btVector3), int(count), MARGIN, btScalar(0.5));
+    if (shrunk < 0 || hull.vertices.size() == 0) hull.compute(all[0].m_floats, sizeof(btVector3), int(count), 0, 0);
+    auto shape = std::make_unique<btConvexHullShape>();
+    for (int i = 0; i < hull.vertices.size(); ++i) shape->addPoint(hull.vertices[i], false);
+    shape->recalcLocalAabb();
+    shape->setMargin(std::max(shrunk, btScalar(0)));
+    of(world).add(body, std::move(shape), btTransform(btQuaternion::getIdentity(), middle));
+}
+
+void add_capsule(void* world, bool body, const double* from, const double* to, double radius) {
+    btVector3 a = scaled(from), b = scaled(to), axis = b - a;
+    btScalar length = axis.length();
+    btQuaternion turn = btQuaternion::getIdentity();
+    if (length > 0) turn = shortestArcQuat(btVector3(0, 0, 1), axis / length);
+    auto shape = std::make_unique<btCapsuleShapeZ>(btScalar(radius * SCALE), length);
+    of(world).add(body, std::move(shape), btTransform(turn, (a + b) / 2));
+}
+
+void add_box(void* world, bool body, const double* centre, const double* axes, const double* half_extents) {
+    btVector3 x = vector(axes), y = vector(axes + 3), z = vector(axes + 6);
+    btMatrix3x3 turn(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]);
+    btVector3 half = scaled(half_extents);
+    auto shape = std::make_unique<btBoxShape>(half);  // keeps its margin inside
+    shape->setMargin(std::min(MARGIN, half[half.minAxis()] / 2));
+    of(world).add(body, std::move(shape), btTransform(turn, scaled(centre)));
+}
+
+void place(void* handle, const State* state) {
+    World& it = of(handle);
+    if (it.body->getBroadphaseHandle()) it.world.removeRigidBody(it.body.get());
+    btQuaternion rotation;
+    for (int i = 0; i < 4; ++i) rotation[i] = btScalar(state->rotation[i]);
+    btTransform pose(rotation.normalized(), scaled(state->position));
+    it.body->setWorldTransform(pose);
+    it.body->setInterpolationWorldTransform(pose);
+    it.body->setLinearVelocity(scaled(state->velocity));
+    it.body->setAngularVelocity(vector(state->spin));
+    it.body->updateInertiaTensor();
+    it.body->clearForces();
+    it.world.addRigidBody(it.body.get());
+    it.solver.reset();
+}
+
+void pull(void* handle, const double* gravity) { of(handle).world.setGravity(scaled(gravity)); }
+
+uint32_t step(void* handle, uint32_t count) {
+    World& it = of(handle);
+    uint32_t touched = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        it.world.stepSimulation(it.time_step, 0);
+        touched += it.touching();
+    }
+    return touched;
+}
+
+void read(void* handle, State* state) {
+    const btRigidBody& body = *of(handle).body;
+    btQuaternion q = body.getWorldTransform().getRotation();
+    for (int i = 0; i < 3; ++i) {
+        state->position[i] = body.getWorldTransform().getOrigin()[i] / SCALE;
+        state->velocity[i] = body.getLinearVelocity()[i] / SCALE;
+        state->spin[i] = body.getAngularVelocity()[i];
+    }
+    for (int i = 0; i < 4; ++i) state->rotation[i] = q[i];
+}
+
+double penetration(void* handle) {
+    World& it = of(handle);
+    Deepest deepest;
+    for (auto& object : it.fixed) it.world.contactPairTest(it.body.get(), object.get(), deepest);
+    return -deepest.distance / SCALE;
+}
+
+}  // namespace
+
+extern "C" const Engine hangpose_bullet;
+const Engine hangpose_bullet = {create, add_hull, add_capsule, add_box,     nullptr, place,
+                                pull,   step,     read,        penetration, destroy};

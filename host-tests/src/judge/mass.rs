@@ -1,0 +1,89 @@
+//! How a solid's mass is spread.
+
+use crate::solid::Solid;
+use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
+
+/// Mass properties of a rigid body.
+#[derive(Clone, Copy, Debug)]
+pub struct Mass {
+    /// Kilograms.
+    pub mass: f64,
+    /// Principal moments of inertia about the centre of mass, kg m².
+    pub inertia: [f64; 3],
+    /// The centre of mass and the principal axes: maps their coordinates to the solid's.
+    pub frame: Isometry3<f64>,
+}
+
+impl Mass {
+    /// Of a solid of one density that weighs `mass` kilograms. Where bodies of its surface overlap it is denser.
+    ///
+    /// # Panics
+    ///
+    /// If its surface encloses no volume.
+    pub fn of(solid: &Solid, mass: f64) -> Self {
+        // Tetrahedra between each triangle and a vertex of the surface, so that nothing large cancels.
+        let at = |index: u32| Vector3::from(solid.vertices[index as usize]).cast::<f64>();
+        let origin = solid.triangles.first().map_or_else(Vector3::zeros, |triangle| at(triangle[0]));
+        let (mut volume, mut first, mut second) = (0.0, Vector3::zeros(), Matrix3::zeros());
+        for &triangle in &solid.triangles {
+            let [a, b, c] = triangle.map(|index| at(index) - origin);
+            let sixfold = a.dot(&b.cross(&c));
+            let sum = a + b + c;
+            volume += sixfold / 6.0;
+            first += sum * (sixfold / 24.0);
+            // The integral of x xᵀ over a tetrahedron with a corner at the origin.
+            let squares = a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose();
+            second += squares * (sixfold / 120.0);
+        }
+        assert!(volume > 0.0, "the surface of the solid encloses no volume");
+        let centre = first / volume;
+        let covariance = second / volume - centre * centre.transpose();
+        let inertia = (Matrix3::identity() * covariance.trace() - covariance) * mass;
+        let principal = inertia.symmetric_eigen();
+        let mut axes = principal.eigenvectors;
+        if axes.determinant() < 0.0 {
+            axes.column_mut(2).neg_mut();
+        }
+        let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
+        Self {
+            mass,
+            inertia: principal.eigenvalues.into(),
+            frame: Isometry3::from_parts(Point3::from(origin + centre).into(), rotation),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_turned_box_far_from_the_origin() {
+        let half = [0.05_f32, 0.02, 0.01];
+        let pose = Isometry3::new(Vector3::new(0.3, -0.2, 0.5), Vector3::new(0.4, 0.8, -0.3));
+        let corner = |i: u32| {
+            let sign = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
+            (pose * Point3::new(sign(1) * half[0], sign(2) * half[1], sign(4) * half[2])).coords.into()
+        };
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let solid = Solid {
+            vertices: (0..8).map(corner).collect(),
+            triangles: quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
+            parts: Vec::new(),
+        };
+        let mass = Mass::of(&solid, 0.3);
+        assert!((mass.frame.translation.vector - pose.translation.vector.cast()).norm() < 1e-7);
+        let mut moments = mass.inertia;
+        moments.sort_by(f64::total_cmp);
+        let expected = |a: f64, b: f64| 0.3 / 3.0 * (a * a + b * b);
+        let expected = [expected(0.02, 0.01), expected(0.05, 0.01), expected(0.05, 0.02)];
+        for (moment, expected) in moments.iter().zip(expected) {
+            assert!((moment / expected - 1.0).abs() < 1e-4, "{moments:?}");
+        }
+        // The axes are the box's, and the frame is a rotation, not a reflection.
+        for axis in mass.frame.rotation.to_rotation_matrix().matrix().column_iter() {
+            let along = pose.rotation.cast::<f64>().inverse() * axis.into_owned();
+            assert!((along.amax() - 1.0).abs() < 1e-4, "{along}");
+        }
+    }
+}

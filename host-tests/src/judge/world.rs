@@ -1,0 +1,220 @@
+//! A rigid body among fixed shapes in a physics engine. All that is unsafe about the judges is here.
+
+use super::buried::Buried;
+use super::{GRAVITY, Scene};
+use crate::solid::{Part, Solid};
+use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
+use std::ffi::c_void;
+
+// These mirror engine.h.
+
+#[repr(C)]
+struct Setup {
+    mass: f64,
+    inertia: [f64; 3],
+    friction: f64,
+    time_step: f64,
+}
+
+#[repr(C)]
+#[derive(Default)]
+struct RawState {
+    position: [f64; 3],
+    rotation: [f64; 4],
+    velocity: [f64; 3],
+    spin: [f64; 3],
+}
+
+type Handle = *mut c_void;
+type AddHull = unsafe extern "C" fn(Handle, bool, *const f64, usize);
+type AddMesh = unsafe extern "C" fn(Handle, bool, *const f64, usize, *const u32, usize);
+
+#[repr(C)]
+pub(super) struct Engine {
+    create: unsafe extern "C" fn(*const Setup) -> Handle,
+    add_hull: Option<AddHull>,
+    add_capsule: unsafe extern "C" fn(Handle, bool, *const f64, *const f64, f64),
+    add_box: unsafe extern "C" fn(Handle, bool, *const f64, *const f64, *const f64),
+    add_mesh: Option<AddMesh>,
+    place: unsafe extern "C" fn(Handle, *const RawState),
+    pull: unsafe extern "C" fn(Handle, *const f64),
+    step: unsafe extern "C" fn(Handle, u32) -> u32,
+    read: unsafe extern "C" fn(Handle, *mut RawState),
+    penetration: unsafe extern "C" fn(Handle) -> f64,
+    destroy: unsafe extern "C" fn(Handle),
+}
+
+unsafe extern "C" {
+    // SAFETY: constants of the shims, of the type that engine.h gives them, and only ever read.
+    safe static hangpose_bullet: Engine;
+    // SAFETY: as above.
+    safe static hangpose_ode: Engine;
+}
+
+pub(super) static BULLET: &Engine = &hangpose_bullet;
+pub(super) static ODE: &Engine = &hangpose_ode;
+
+/// Where the body is and how it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Maps object to supporter coordinates.
+    pub pose: Isometry3<f64>,
+    /// The centre of mass, in supporter coordinates.
+    pub centre: Vector3<f64>,
+    /// Of the centre of mass, metres per second.
+    pub velocity: Vector3<f64>,
+    /// Radians per second, in supporter coordinates.
+    pub spin: Vector3<f64>,
+}
+
+/// One scene in one engine. It belongs to the thread that made it; threads may each have their own.
+pub struct World {
+    engine: &'static Engine,
+    handle: Handle,
+    time_step: f64,
+    frame: Isometry3<f64>,
+    buried: Option<Buried>,
+}
+
+impl World {
+    pub(super) fn new(engine: &'static Engine, scene: &Scene, time_step: f64) -> Self {
+        let setup =
+            Setup { mass: scene.mass.mass, inertia: scene.mass.inertia, friction: scene.friction, time_step };
+        // SAFETY: `setup` outlives the call, which keeps no pointer to it.
+        let handle = unsafe { (engine.create)(&setup) };
+        let mut world = Self { engine, handle, time_step, frame: scene.mass.frame, buried: None };
+        world.pull(Vector3::new(0.0, 0.0, -GRAVITY));
+        world
+    }
+
+    /// Adds a part: to the body, whose coordinates `into_body` leads to, or else to what is fixed.
+    pub(super) fn add_part(&mut self, part: &Part, into_body: Option<&Isometry3<f64>>) {
+        let body = into_body.is_some();
+        let pose = into_body.copied().unwrap_or_default();
+        let place = |point: &[f32; 3]| (pose * Point3::from(*point).cast::<f64>()).coords;
+        match part {
+            Part::Hull(points) => {
+                let points: Vec<f64> = points.iter().flat_map(|point| <[f64; 3]>::from(place(point))).collect();
+                if let Some(add_hull) = self.engine.add_hull {
+                    // SAFETY: the handle is alive; `points` has three numbers for each that the count says.
+                    unsafe { add_hull(self.handle, body, points.as_ptr(), points.len() / 3) }
+                }
+            }
+            Part::Capsule { from, to, radius } => {
+                let (from, to) = (place(from), place(to));
+                // SAFETY: the handle is alive; both arrays have three numbers.
+                unsafe {
+                    (self.engine.add_capsule)(self.handle, body, from.as_ptr(), to.as_ptr(), f64::from(*radius));
+                }
+            }
+            Part::Cuboid { centre, axes, half_extents } => {
+                let centre = place(centre);
+                let axes = axes.map(|axis| <[f64; 3]>::from(pose * Vector3::from(axis).cast::<f64>()));
+                let half_extents = half_extents.map(f64::from);
+                let axes = axes.as_flattened();
+                // SAFETY: the handle is alive; the arrays have three, nine and three numbers.
+                unsafe {
+                    (self.engine.add_box)(
+                        self.handle,
+                        body,
+                        centre.as_ptr(),
+                        axes.as_ptr(),
+                        half_extents.as_ptr(),
+                    );
+                }
+            }
+        }
+    }
+
+    /// Adds a surface, as [`World::add_part`] adds a part.
+    pub(super) fn add_mesh(&mut self, solid: &Solid, into_body: Option<&Isometry3<f64>>) {
+        let pose = into_body.copied().unwrap_or_default();
+        let place = |point: &[f32; 3]| <[f64; 3]>::from((pose * Point3::from(*point).cast::<f64>()).coords);
+        let vertices: Vec<f64> = solid.vertices.iter().flat_map(place).collect();
+        let corners = solid.triangles.as_flattened();
+        assert!(corners.iter().all(|&corner| (corner as usize) < solid.vertices.len()), "no such vertex");
+        if let Some(add_mesh) = self.engine.add_mesh {
+            // SAFETY: the handle is alive; the counts are those of the slices, and every index is of a vertex.
+            unsafe {
+                add_mesh(
+                    self.handle,
+                    into_body.is_some(),
+                    vertices.as_ptr(),
+                    solid.vertices.len(),
+                    corners.as_ptr(),
+                    solid.triangles.len(),
+                );
+            }
+        }
+    }
+
+    /// Lets [`World::penetration`] also find what has sunk into a surface without touching it.
+    pub(super) fn look_inside(&mut self, scene: &Scene) {
+        self.buried = Some(Buried::new(scene));
+    }
+
+    /// Puts the body where `state` says, moving as it says, with no memory of earlier contacts. The centre follows
+    /// from the pose.
+    pub fn place(&mut self, state: &State) {
+        let body = state.pose * self.frame;
+        let raw = RawState {
+            position: body.translation.vector.into(),
+            rotation: body.rotation.coords.into(),
+            velocity: state.velocity.into(),
+            spin: state.spin.into(),
+        };
+        // SAFETY: the handle is alive; `raw` outlives the call, which keeps no pointer to it.
+        unsafe { (self.engine.place)(self.handle, &raw) }
+    }
+
+    /// Puts the body at a pose and at rest.
+    pub fn release(&mut self, pose: &Isometry3<f64>) {
+        let still = Vector3::zeros();
+        self.place(&State { pose: *pose, centre: still, velocity: still, spin: still });
+    }
+
+    /// Sets gravity, metres per second squared.
+    pub fn pull(&mut self, gravity: Vector3<f64>) {
+        // SAFETY: the handle is alive; the vector is three numbers.
+        unsafe { (self.engine.pull)(self.handle, gravity.as_ptr()) }
+    }
+
+    /// Lets time pass, in whole steps and at least one. Returns whether the body touched something in each step
+    /// (1), in none (0) or in some: the share of them.
+    pub fn pass(&mut self, seconds: f64) -> f64 {
+        let steps = (seconds / self.time_step).round().max(1.0) as u32;
+        // SAFETY: the handle is alive.
+        let touched = unsafe { (self.engine.step)(self.handle, steps) };
+        f64::from(touched) / f64::from(steps)
+    }
+
+    /// Where the body is now.
+    pub fn state(&self) -> State {
+        let mut raw = RawState::default();
+        // SAFETY: the handle is alive; `raw` is written within the call only.
+        unsafe { (self.engine.read)(self.handle, &mut raw) }
+        let rotation = UnitQuaternion::from_quaternion(Quaternion::from(raw.rotation));
+        let body = Isometry3::from_parts(Translation3::from(raw.position), rotation);
+        State {
+            pose: body * self.frame.inverse(),
+            centre: raw.position.into(),
+            velocity: raw.velocity.into(),
+            spin: raw.spin.into(),
+        }
+    }
+
+    /// How deep the body is in something where it is now, metres; 0 when it is in nothing.
+    pub fn penetration(&mut self) -> f64 {
+        // SAFETY: the handle is alive.
+        let depth = unsafe { (self.engine.penetration)(self.handle) };
+        let pose = self.state().pose;
+        self.buried.as_ref().map_or(depth, |buried| buried.depth(&pose).max(depth))
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        // SAFETY: the handle came from `create` and is not used again.
+        unsafe { (self.engine.destroy)(self.handle) }
+    }
+}
