@@ -1,10 +1,11 @@
 //! The pairs: made by the shape library from a seed, or real ones from a folder of meshes.
 
-use crate::shapes::{OBJECTS, ObjectKind, Random, SUPPORTERS, fits};
+use crate::shapes::{OBJECTS, ObjectKind, SUPPORTERS, fits};
 use crate::solid::Solid;
 use std::sync::Arc;
 
 /// An object and a supporter, and whether they go together.
+#[derive(Clone)]
 pub struct Case {
     /// Names the pair; the same in every run with the same seed.
     pub name: String,
@@ -50,7 +51,7 @@ pub fn made(pairs: usize, seed: u64) -> Vec<Case> {
 fn made_case(object: &ObjectKind, supporter: usize, seed: u64, draw: u64, should_fit: bool) -> Option<Case> {
     let supporter = &SUPPORTERS[supporter % SUPPORTERS.len()];
     let sizes = seed << 32 | draw;
-    let made = ((object.make)(&mut Random::new(2 * sizes)), (supporter.make)(&mut Random::new(2 * sizes + 1)));
+    let made = (object.make(2 * sizes), supporter.make(2 * sizes + 1));
     (fits(&made.0, &made.1) == should_fit).then(|| Case {
         name: format!("{}-{}-{seed}-{draw}", object.name, supporter.name),
         seed: draw,

@@ -1,0 +1,307 @@
+//! Bodies from a few rules, mesh and convex parts at once, so that the two cannot drift apart.
+
+use super::vector::{V, X, Y, Z, across, add, along, cross, dot, length, scale, single, sub, turn, unit};
+use crate::solid::{Part, Solid};
+
+/// A shape in the making. Every method adds one closed body, and the convex parts that fill it.
+#[derive(Clone, Default)]
+pub(crate) struct Builder {
+    vertices: Vec<V>,
+    triangles: Vec<[usize; 3]>,
+    parts: Vec<Convex>,
+}
+
+#[derive(Clone)]
+enum Convex {
+    Hull(Vec<V>),
+    Capsule(V, V, f64),
+    Cuboid(V, [V; 3], V),
+}
+
+/// How many corners the polygon has that stands for a circle: within about 0.2 mm of it up to a radius of 25 mm.
+pub(crate) fn corners_of(radius: f64) -> usize {
+    match radius {
+        r if r < 0.002 => 6,
+        r if r < 0.008 => 12,
+        r if r < 0.014 => 16,
+        _ => 24,
+    }
+}
+
+/// A circle's polygon.
+pub(crate) fn circle(radius: f64) -> Vec<[f64; 2]> {
+    ellipse(radius, radius)
+}
+
+/// An ellipse's polygon.
+pub(crate) fn ellipse(a: f64, b: f64) -> Vec<[f64; 2]> {
+    let n = corners_of(a.max(b));
+    let corner = |i| turn(360.0 * i as f64 / n as f64);
+    (0..n).map(corner).map(|[cos, sin]| [a * cos, b * sin]).collect()
+}
+
+/// A rectangle of these edge lengths about the origin.
+pub(crate) fn rectangle(a: f64, b: f64) -> Vec<[f64; 2]> {
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| [x * a / 2.0, y * b / 2.0]).to_vec()
+}
+
+/// Tangents along a path, which is closed if it ends where it began; and how many points of it are distinct.
+fn tangents(path: &[V]) -> (Vec<V>, bool) {
+    let is_closed = length(sub(path[0], path[path.len() - 1])) < 1e-9;
+    let n = path.len() - usize::from(is_closed);
+    let step = |i: usize, j: usize| unit(sub(path[j], path[i]));
+    let tangent = |i: usize| match i {
+        0 if !is_closed => step(0, 1),
+        _ if !is_closed && i == n - 1 => step(n - 2, n - 1),
+        _ => unit(add(step((i + n - 1) % n, i), step(i, (i + 1) % n))),
+    };
+    ((0..n).map(tangent).collect(), is_closed)
+}
+
+impl Builder {
+    /// The shape in single precision.
+    pub(crate) fn finish(&self) -> Solid {
+        let part = |part: &Convex| match part {
+            Convex::Hull(points) => Part::Hull(points.iter().copied().map(single).collect()),
+            &Convex::Capsule(from, to, radius) => {
+                Part::Capsule { from: single(from), to: single(to), radius: radius as f32 }
+            }
+            &Convex::Cuboid(centre, axes, half) => {
+                Part::Cuboid { centre: single(centre), axes: axes.map(single), half_extents: single(half) }
+            }
+        };
+        Solid {
+            vertices: self.vertices.iter().copied().map(single).collect(),
+            triangles: self.triangles.iter().map(|t| t.map(|v| v as u32)).collect(),
+            parts: self.parts.iter().map(part).collect(),
+        }
+    }
+
+    /// Adds `other`, whose x, y and z go along the unit vectors `axes` (right-handed) and whose origin to `origin`.
+    pub(crate) fn place(&mut self, other: &Self, axes: [V; 3], origin: V) {
+        let to = |v: V| along(along(along(origin, v[0], axes[0]), v[1], axes[1]), v[2], axes[2]);
+        let turned = |v: V| sub(to(v), origin);
+        let first = self.vertices.len();
+        self.vertices.extend(other.vertices.iter().map(|&v| to(v)));
+        self.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + first)));
+        self.parts.extend(other.parts.iter().map(|part| match part {
+            Convex::Hull(points) => Convex::Hull(points.iter().map(|&v| to(v)).collect()),
+            &Convex::Capsule(a, b, radius) => Convex::Capsule(to(a), to(b), radius),
+            &Convex::Cuboid(centre, edges, half) => Convex::Cuboid(to(centre), edges.map(turned), half),
+        }));
+    }
+
+    /// Adds a closed surface and turns it so that it faces outwards.
+    fn body(&mut self, vertices: Vec<V>, mut triangles: Vec<[usize; 3]>) {
+        let volume: f64 = triangles
+            .iter()
+            .map(|t| t.map(|i| sub(vertices[i], vertices[0])))
+            .map(|[a, b, c]| dot(a, cross(b, c)))
+            .sum();
+        if volume < 0.0 {
+            triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        let first = self.vertices.len();
+        self.vertices.extend(vertices);
+        self.triangles.extend(triangles.into_iter().map(|t| t.map(|i| i + first)));
+    }
+
+    /// Skins convex polygons with the same number of corners, one after another (the first again after the last
+    /// if closed); a first or last polygon of one point is a tip. A hull for each pair.
+    pub(crate) fn loft(&mut self, rings: &[Vec<V>], is_closed: bool) {
+        self.skin(rings, is_closed);
+        for i in 1..rings.len() + usize::from(is_closed) {
+            let (a, b) = (&rings[i - 1], &rings[i % rings.len()]);
+            self.parts.push(Convex::Hull(a.iter().chain(b).copied().collect()));
+        }
+    }
+
+    fn skin(&mut self, rings: &[Vec<V>], is_closed: bool) {
+        let mut triangles = Vec::new();
+        let firsts: Vec<usize> = rings
+            .iter()
+            .scan(0, |next, ring| {
+                *next += ring.len();
+                Some(*next - ring.len())
+            })
+            .collect();
+        for i in 1..rings.len() + usize::from(is_closed) {
+            let j = i % rings.len();
+            let (a, b) = (firsts[i - 1], firsts[j]);
+            let n = rings[i - 1].len().max(rings[j].len());
+            for k in 0..n {
+                let next = (k + 1) % n;
+                match (rings[i - 1].len(), rings[j].len()) {
+                    (1, _) => triangles.push([a, b + next, b + k]),
+                    (_, 1) => triangles.push([a + k, a + next, b]),
+                    _ => triangles.extend([[a + k, a + next, b + next], [a + k, b + next, b + k]]),
+                }
+            }
+        }
+        if !is_closed {
+            let last = rings.len() - 1;
+            for k in 1..rings[0].len().max(2) - 1 {
+                triangles.push([firsts[0], firsts[0] + k + 1, firsts[0] + k]);
+            }
+            for k in 1..rings[last].len().max(2) - 1 {
+                triangles.push([firsts[last], firsts[last] + k, firsts[last] + k + 1]);
+            }
+        }
+        self.body(rings.iter().flatten().copied().collect(), triangles);
+    }
+
+    /// Polygons across a path, carried along it without twist. `side` is where the polygon's x points at first.
+    fn rings(path: &[V], side: V, section: impl Fn(usize) -> Vec<[f64; 2]>) -> (Vec<Vec<V>>, bool) {
+        let (tangents, is_closed) = tangents(path);
+        let mut u = side;
+        let ring = |(i, &t): (usize, &V)| {
+            u = unit(across(u, t));
+            let v = cross(t, u);
+            section(i).iter().map(|&[x, y]| along(along(path[i], x, u), y, v)).collect()
+        };
+        (tangents.iter().enumerate().map(ring).collect(), is_closed)
+    }
+
+    /// A convex polygon carried along a path, with flat ends; a path that ends where it began closes.
+    pub(crate) fn sweep(&mut self, path: &[V], side: V, section: &[[f64; 2]]) {
+        let (rings, is_closed) = Self::rings(path, side, |_| section.to_vec());
+        self.loft(&rings, is_closed);
+    }
+
+    /// A sweep whose polygon is scaled along the way.
+    pub(crate) fn tapered(&mut self, path: &[V], side: V, section: &[[f64; 2]], size: impl Fn(f64) -> f64) {
+        let last = (path.len() - 1) as f64;
+        let scaled = |i| {
+            let s = size(i as f64 / last);
+            section.iter().map(|&[x, y]| [x * s, y * s]).collect()
+        };
+        let (rings, is_closed) = Self::rings(path, side, scaled);
+        self.loft(&rings, is_closed);
+    }
+
+    /// A round tube with round ends, or closed if its path is: capsules.
+    pub(crate) fn tube(&mut self, path: &[V], radius: f64) {
+        let start = sub(path[1], path[0]);
+        let side = if start[2].abs() < 0.7 * length(start) { Z } else { X };
+        let (mut rings, is_closed) = Self::rings(path, side, |_| circle(radius));
+        if !is_closed {
+            let steps = if radius < 0.01 { 4 } else { 8 };
+            for end in 0..2 {
+                let (tip, inner) =
+                    if end == 0 { (path[0], path[1]) } else { (path[path.len() - 1], path[path.len() - 2]) };
+                let out = unit(sub(tip, inner));
+                let ring = if end == 0 { rings[0].clone() } else { rings[rings.len() - 1].clone() };
+                let mut round: Vec<Vec<V>> = (1..steps)
+                    .map(|k| {
+                        let [cos, sin] = turn(90.0 * k as f64 / steps as f64);
+                        ring.iter().map(|&v| along(along(tip, cos, sub(v, tip)), radius * sin, out)).collect()
+                    })
+                    .collect();
+                round.push(vec![along(tip, radius, out)]);
+                if end == 0 {
+                    round.reverse();
+                    round.append(&mut rings);
+                    rings = round;
+                } else {
+                    rings.append(&mut round);
+                }
+            }
+        }
+        self.skin(&rings, is_closed);
+        self.parts.extend(path.windows(2).map(|p| Convex::Capsule(p[0], p[1], radius)));
+    }
+
+    /// What an outline of (radius, z) makes about the z axis, filled up to the axis: a slice for each of its steps.
+    /// It may begin and end on the axis.
+    pub(crate) fn lathe(&mut self, outline: &[[f64; 2]]) {
+        let count = corners_of(outline.iter().fold(0.0, |most, p| p[0].max(most)));
+        let ring = |&[r, z]: &[f64; 2]| match r {
+            0.0 => vec![[0.0, 0.0, z]],
+            _ => (0..count)
+                .map(|i| turn(360.0 * i as f64 / count as f64))
+                .map(|[cos, sin]| [r * cos, r * sin, z])
+                .collect(),
+        };
+        self.loft(&outline.iter().map(ring).collect::<Vec<_>>(), false);
+    }
+
+    /// A ball, in slices.
+    pub(crate) fn ball(&mut self, centre: V, radius: f64) {
+        let mut ball = Self::default();
+        let mut outline: Vec<[f64; 2]> =
+            (0..=12).map(|i| turn(15.0 * i as f64)).map(|[cos, sin]| [radius * sin, -radius * cos]).collect();
+        (outline[0][0], outline[12][0]) = (0.0, 0.0);
+        ball.lathe(&outline);
+        self.place(&ball, [X, Y, Z], centre);
+    }
+
+    /// A wall about the z axis: between a pair of (radius, z) and the next, a convex quadrilateral revolved. The
+    /// first pair may lie on the axis.
+    pub(crate) fn revolve(&mut self, wall: &[[[f64; 2]; 2]]) {
+        const COUNT: usize = 24;
+        let at = |[r, z]: [f64; 2], i: usize| {
+            let [cos, sin] = turn(360.0 * i as f64 / COUNT as f64);
+            [r * cos, r * sin, z]
+        };
+        let ring = |p: [f64; 2]| match p[0] {
+            0.0 => vec![[0.0, 0.0, p[1]]],
+            _ => (0..COUNT).map(|i| at(p, i)).collect(),
+        };
+        let rings: Vec<Vec<V>> = (wall.iter().map(|pair| ring(pair[0])))
+            .chain(wall.iter().rev().map(|pair| ring(pair[1])))
+            .collect();
+        self.skin(&rings, wall[0][0][0] > 0.0);
+        for pair in wall.windows(2) {
+            let corners = [pair[0][0], pair[0][1], pair[1][0], pair[1][1]];
+            let [a, b] = if corners[0][1] > corners[1][1] { [0, 1] } else { [1, 0] };
+            let is_disc = corners[0][0] == 0.0
+                && corners[a][1] >= corners[a + 2][1]
+                && corners[b][1] <= corners[b + 2][1];
+            if is_disc {
+                self.parts.push(Convex::Hull(corners.iter().flat_map(|&p| ring(p)).collect()));
+                continue;
+            }
+            for i in 0..COUNT {
+                let both = |p: [f64; 2]| {
+                    let count = if p[0] == 0.0 { 1 } else { 2 };
+                    (0..count).map(move |k| at(p, (i + k) % COUNT))
+                };
+                self.parts.push(Convex::Hull(corners.iter().flat_map(|&p| both(p)).collect()));
+            }
+        }
+    }
+
+    /// A band in the x-y plane from `low` to `high` in z: between a pair of points and the next, a convex
+    /// quadrilateral.
+    pub(crate) fn strip(&mut self, pairs: &[[[f64; 2]; 2]], [low, high]: [f64; 2], is_closed: bool) {
+        let ring = |&[a, b]: &[[f64; 2]; 2]| {
+            vec![[a[0], a[1], low], [b[0], b[1], low], [b[0], b[1], high], [a[0], a[1], high]]
+        };
+        self.loft(&pairs.iter().map(ring).collect::<Vec<_>>(), is_closed);
+    }
+
+    /// A flat ring about `centre` with elliptical edges.
+    pub(crate) fn eye(&mut self, [x, y]: [f64; 2], inner: [f64; 2], outer: [f64; 2], z: [f64; 2]) {
+        let pairs: Vec<_> = (0..24)
+            .map(|i| turn(15.0 * i as f64))
+            .map(|[cos, sin]| [inner, outer].map(|[a, b]| [x + a * cos, y + b * sin]))
+            .collect();
+        self.strip(&pairs, z, true);
+    }
+
+    /// A convex outline in the x-y plane, from `low` to `high` in z.
+    pub(crate) fn prism(&mut self, outline: &[[f64; 2]], [low, high]: [f64; 2]) {
+        let ring = |z: f64| outline.iter().map(|&[x, y]| [x, y, z]).collect::<Vec<V>>();
+        self.loft(&[ring(low), ring(high)], false);
+    }
+
+    /// A box.
+    pub(crate) fn cuboid(&mut self, low: V, high: V) {
+        let ring = |z: f64| {
+            vec![[low[0], low[1], z], [high[0], low[1], z], [high[0], high[1], z], [low[0], high[1], z]]
+        };
+        self.skin(&[ring(low[2]), ring(high[2])], false);
+        let (centre, half) = (scale(add(low, high), 0.5), scale(sub(high, low), 0.5));
+        self.parts.push(Convex::Cuboid(centre, [X, Y, Z], half));
+    }
+}

@@ -1,0 +1,126 @@
+//! Openings, their width measured on the surface that was built.
+
+use super::builder::Builder;
+use super::vector::{V, X, Y, across, add, along, cross, dot, double, length, scale, single, sub, unit};
+use super::{HangObject, Opening, OpeningKind};
+use crate::solid::Solid;
+
+/// Half the length of the bar that a hole is measured with.
+const HALF_LENGTH: f64 = 0.005;
+
+impl HangObject {
+    /// Without any opening yet.
+    pub(crate) fn new(builder: &Builder) -> Self {
+        Self { solid: builder.finish(), openings: Vec::new() }
+    }
+
+    /// With a hole that has `inside` inside; its middle is where the widest bar along `axis` passes.
+    pub(crate) fn hole(mut self, inside: V, axis: V) -> Self {
+        let axis = unit(axis);
+        let near = Near::new(&self.solid, inside, axis);
+        let u = unit(across(if axis[0].abs() < 0.7 { X } else { Y }, axis));
+        let v = cross(axis, u);
+        let (mut centre, mut widest) = (inside, near.clearance(inside));
+        let mut step = widest / 2.0;
+        while step > 5e-5 {
+            let moved = (0..8).map(|i| super::vector::turn(45.0 * f64::from(i)));
+            let best = moved
+                .map(|[cos, sin]| along(along(centre, step * cos, u), step * sin, v))
+                .map(|p| (near.clearance(p), p))
+                .max_by(|a, b| a.0.total_cmp(&b.0));
+            match best {
+                Some((clear, p)) if clear > widest => (widest, centre) = (clear, p),
+                _ => step /= 2.0,
+            }
+        }
+        self.push(OpeningKind::Hole, centre, axis, widest);
+        self
+    }
+
+    /// With a hook about `centre`, whose mouth lets nothing wider than `mouth` in.
+    pub(crate) fn hook(mut self, centre: V, axis: V, mouth: f64) -> Self {
+        let axis = unit(axis);
+        let clear = Near::new(&self.solid, centre, axis).clearance(centre).min(mouth / 2.0);
+        self.push(OpeningKind::Hook, centre, axis, clear);
+        self
+    }
+
+    /// With another kind of opening.
+    pub(crate) fn push(&mut self, kind: OpeningKind, centre: V, axis: V, clear_radius: f64) {
+        let clear_radius = clear_radius as f32;
+        self.openings.push(Opening { kind, centre: single(centre), axis: single(axis), clear_radius });
+    }
+}
+
+/// The triangles that a bar about a place might touch.
+struct Near {
+    axis: V,
+    triangles: Vec<[V; 3]>,
+}
+
+impl Near {
+    fn new(solid: &Solid, centre: V, axis: V) -> Self {
+        let corners = solid.triangles.iter().map(|t| t.map(|v| double(solid.vertices[v as usize])));
+        let mut triangles: Vec<_> = corners.collect();
+        triangles.retain(|t| {
+            let heights = t.map(|p| dot(sub(p, centre), axis));
+            heights.iter().any(|&h| h > -2.0 * HALF_LENGTH) && heights.iter().any(|&h| h < 2.0 * HALF_LENGTH)
+        });
+        Self { axis, triangles }
+    }
+
+    /// The radius of the widest bar about `centre`.
+    fn clearance(&self, centre: V) -> f64 {
+        let ends = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|s| along(centre, s * HALF_LENGTH, self.axis));
+        let distance = |p: &V| {
+            self.triangles.iter().map(|t| length(sub(*p, nearest(*p, t)))).fold(f64::INFINITY, f64::min)
+        };
+        ends.iter().map(distance).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// The point of a triangle nearest to `p` (Ericson, "Real-Time Collision Detection", 2005, 5.1.5).
+fn nearest(p: V, &[a, b, c]: &[V; 3]) -> V {
+    let (ab, ac) = (sub(b, a), sub(c, a));
+    let [d1, d2] = [ab, ac].map(|e| dot(e, sub(p, a)));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return a;
+    }
+    let [d3, d4] = [ab, ac].map(|e| dot(e, sub(p, b)));
+    if d3 >= 0.0 && d4 <= d3 {
+        return b;
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return along(a, d1 / (d1 - d3), ab);
+    }
+    let [d5, d6] = [ab, ac].map(|e| dot(e, sub(p, c)));
+    if d6 >= 0.0 && d5 <= d6 {
+        return c;
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return along(a, d2 / (d2 - d6), ac);
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
+        return along(b, (d4 - d3) / ((d4 - d3) + (d5 - d6)), sub(c, b));
+    }
+    add(a, scale(add(scale(ab, vb), scale(ac, vc)), 1.0 / (va + vb + vc)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::vector::Z;
+    use super::*;
+
+    #[test]
+    fn a_hole_is_as_wide_as_it_was_made() {
+        let mut builder = Builder::default();
+        builder.eye([0.1, 0.0], [0.01, 0.01], [0.015, 0.015], [0.0, 0.003]);
+        let ring = HangObject::new(&builder).hole([0.104, 0.002, 0.001], Z);
+        let hole = ring.openings[0];
+        assert!((hole.clear_radius - 0.01).abs() < 2e-4, "{hole:?}");
+        assert!((hole.centre[0] - 0.1).abs() < 2e-4 && hole.centre[1].abs() < 2e-4, "{hole:?}");
+    }
+}
