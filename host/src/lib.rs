@@ -1,3 +1,4 @@
 //! hangpose on a computer with files.
 
 pub mod files;
+pub mod parry;
