@@ -18,7 +18,13 @@ const OBJECT: [f32; 3] = [0.85, 0.45, 0.20];
 const SUPPORTER: [f32; 3] = [0.45, 0.50, 0.60];
 
 /// Writes a PNG with the object at `release` on the left and at `rest` on the right.
-pub fn write(path: &Path, object: &Solid, supporter: &Solid, release: &Pose, rest: &Pose) -> image::ImageResult<()> {
+pub fn write(
+    path: &Path,
+    object: &Solid,
+    supporter: &Solid,
+    release: &Pose,
+    rest: &Pose,
+) -> image::ImageResult<()> {
     let [object, supporter] = [object, supporter].map(mesh_of);
     let mut picture = RgbImage::from_pixel(2 * SIDE, SIDE, BACKGROUND);
     for (column, pose) in [(0, release), (SIDE, rest)] {
@@ -39,7 +45,8 @@ fn draw(picture: &mut RgbImage, column: u32, object: &TriMesh, supporter: &TriMe
     let right = math::Vector::Z.cross(back).normalize();
     let up = back.cross(right);
     let aabb = supporter.aabb(&identity);
-    let (centre, reach) = (aabb.center(), 0.5 * aabb.extents().length() + object.local_aabb().extents().length());
+    let (centre, reach) =
+        (aabb.center(), 0.5 * aabb.extents().length() + object.local_aabb().extents().length());
     let reach = reach.min(0.6);
     for y in 0..SIDE {
         for x in 0..SIDE {

@@ -21,6 +21,7 @@
 
 mod analyze;
 pub mod files;
+pub mod parry;
 
 pub use analyze::{LIMITS, TooLarge, analyze_object, analyze_supporter, sample_supporter};
 pub use hangpose_core::*;

@@ -94,7 +94,8 @@ impl World {
         let place = |point: &[f32; 3]| (pose * Point3::from(*point).cast::<f64>()).coords;
         match part {
             Part::Hull(points) => {
-                let points: Vec<f64> = points.iter().flat_map(|point| <[f64; 3]>::from(place(point))).collect();
+                let points: Vec<f64> =
+                    points.iter().flat_map(|point| <[f64; 3]>::from(place(point))).collect();
                 if let Some(add_hull) = self.engine.add_hull {
                     // SAFETY: the handle is alive; `points` has three numbers for each that the count says.
                     unsafe { add_hull(self.handle, body, points.as_ptr(), points.len() / 3) }
@@ -104,7 +105,13 @@ impl World {
                 let (from, to) = (place(from), place(to));
                 // SAFETY: the handle is alive; both arrays have three numbers.
                 unsafe {
-                    (self.engine.add_capsule)(self.handle, body, from.as_ptr(), to.as_ptr(), f64::from(*radius));
+                    (self.engine.add_capsule)(
+                        self.handle,
+                        body,
+                        from.as_ptr(),
+                        to.as_ptr(),
+                        f64::from(*radius),
+                    );
                 }
             }
             Part::Cuboid { centre, axes, half_extents } => {

@@ -29,7 +29,8 @@ const TRIES: u64 = 30;
 /// `pairs` pairs that fit, every hangable kind of object and every kind of supporter in turn, and a quarter as many
 /// that cannot hang.
 pub fn made(pairs: usize, seed: u64) -> Vec<Case> {
-    let kinds = |is_hangable| OBJECTS.iter().filter(move |kind| kind.is_hangable == is_hangable).collect::<Vec<_>>();
+    let kinds =
+        |is_hangable| OBJECTS.iter().filter(move |kind| kind.is_hangable == is_hangable).collect::<Vec<_>>();
     let (hangable, unhangable) = (kinds(true), kinds(false));
     let mut cases = Vec::new();
     let mut turn = 0;
@@ -37,11 +38,19 @@ pub fn made(pairs: usize, seed: u64) -> Vec<Case> {
         let object = hangable[turn % hangable.len()];
         // One supporter further with each round through the objects, so that all meet all.
         let supporter = turn / hangable.len() + turn;
-        cases.extend((0..TRIES).find_map(|k| made_case(object, supporter, seed, turn as u64 * TRIES + k, true)));
+        cases.extend(
+            (0..TRIES).find_map(|k| made_case(object, supporter, seed, turn as u64 * TRIES + k, true)),
+        );
         turn += 1;
     }
     let unhangable_pairs = (0..pairs / 4).filter_map(|turn| {
-        made_case(unhangable[turn % unhangable.len()], turn / unhangable.len() + turn, seed, turn as u64, false)
+        made_case(
+            unhangable[turn % unhangable.len()],
+            turn / unhangable.len() + turn,
+            seed,
+            turn as u64,
+            false,
+        )
     });
     cases.extend(unhangable_pairs);
     cases

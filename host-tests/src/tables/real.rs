@@ -39,9 +39,11 @@ pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
     let supporters = load(of("supporters/"))?;
     let mut cases = Vec::new();
     for (group, fits) in [("objects/", true), ("unhangable/", false)] {
-        let chosen = of(group).into_iter().filter(|e| if fits { e.hangable == "yes" } else { e.hangable == "no" });
+        let chosen =
+            of(group).into_iter().filter(|e| if fits { e.hangable == "yes" } else { e.hangable == "no" });
         let objects = load(chosen.collect())?;
-        let all: Vec<_> = objects.iter().flat_map(|object| supporters.iter().map(move |s| (object, s))).collect();
+        let all: Vec<_> =
+            objects.iter().flat_map(|object| supporters.iter().map(move |s| (object, s))).collect();
         let count = if fits { pairs } else { pairs / 2 }.min(all.len());
         cases.extend((0..count).map(|k| {
             let (object, supporter) = all[k * all.len() / count];
@@ -70,9 +72,11 @@ fn solid(folder: &Path, entry: &Entry) -> Result<Solid> {
         "-z" => [x, -y, -z],
         _ => [x, y, z],
     };
-    let vertices: Vec<[f32; 3]> = mesh.vertices.iter().map(|v| turn(v.map(|x| x * entry.scale_to_m))).collect();
+    let vertices: Vec<[f32; 3]> =
+        mesh.vertices.iter().map(|v| turn(v.map(|x| x * entry.scale_to_m))).collect();
     let points: Vec<_> = vertices.iter().map(|&v| v.into()).collect();
-    let parameters = VHACDParameters { resolution: RESOLUTION, concavity: 0.002, ..VHACDParameters::default() };
+    let parameters =
+        VHACDParameters { resolution: RESOLUTION, concavity: 0.002, ..VHACDParameters::default() };
     let parts = VHACD::decompose(&parameters, &points, &mesh.triangles, true)
         .compute_exact_convex_hulls(&points, &mesh.triangles)
         .into_iter()

@@ -44,12 +44,21 @@ pub fn tables(title: &str, rows: &[Row]) -> String {
         text += &by("supporter", &fits, |row| &row.supporter);
         if !rest.is_empty() {
             let rejected = rest.iter().filter(|row| row.rejection.is_some()).count();
-            let _ = writeln!(text, "Pairs that cannot hang: {}; rejected, %: {}.\n", rest.len(), wilson(rejected, rest.len()));
+            let _ = writeln!(
+                text,
+                "Pairs that cannot hang: {}; rejected, %: {}.\n",
+                rest.len(),
+                wilson(rejected, rest.len())
+            );
         }
         let mut seconds: Vec<f64> = rows.iter().map(|row| row.seconds).collect();
         seconds.sort_by(f64::total_cmp);
         if let Some(median) = seconds.get(seconds.len() / 2) {
-            let _ = writeln!(text, "Seconds per prediction, median: {median:.3}; slowest: {:.3}.\n", seconds[seconds.len() - 1]);
+            let _ = writeln!(
+                text,
+                "Seconds per prediction, median: {median:.3}; slowest: {:.3}.\n",
+                seconds[seconds.len() - 1]
+            );
         }
         text += &agreement(&fits);
         text += &failures(&fits);
@@ -63,7 +72,9 @@ fn by<'r>(name: &str, rows: &[&'r Row], key: impl Fn(&'r Row) -> &'r String) -> 
     for row in rows {
         groups.entry(key(row)).or_default().push(row);
     }
-    let mut text = format!("| {name} | pairs | found | success | robust | top 5 | top 10 |\n|---|--:|--:|--:|--:|--:|--:|\n");
+    let mut text = format!(
+        "| {name} | pairs | found | success | robust | top 5 | top 10 |\n|---|--:|--:|--:|--:|--:|--:|\n"
+    );
     for (name, rows) in groups.into_iter().chain([("**all**", rows.to_vec())]) {
         let count = |holds: &dyn Fn(&Row) -> bool| rows.iter().filter(|row| holds(row)).count();
         let first = |row: &Row, holds: fn(&Outcome) -> bool| row.first().is_some_and(holds);
@@ -128,9 +139,12 @@ mod tests {
     #[test]
     fn wilson_intervals_as_published() {
         // Newcombe 1998, "Two-sided confidence intervals for the single proportion", table I, method 3.
-        for (successes, trials, low, high) in
-            [(81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611), (1, 29, 0.0061, 0.1718)]
-        {
+        for (successes, trials, low, high) in [
+            (81, 263, 0.2553, 0.3662),
+            (15, 148, 0.0624, 0.1605),
+            (0, 20, 0.0, 0.1611),
+            (1, 29, 0.0061, 0.1718),
+        ] {
             let [l, h] = wilson_interval(successes, trials);
             assert!((l - low).abs() < 1e-4 && (h - high).abs() < 1e-4, "{successes}/{trials}: {l} {h}");
         }

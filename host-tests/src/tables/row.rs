@@ -118,7 +118,9 @@ impl Failure {
     /// What would mend it.
     pub fn remedy(self) -> &'static str {
         match self {
-            Self::NoSite => "more candidate sites: smaller clusters, rims and domes, pegs steeper than alpha_s",
+            Self::NoSite => {
+                "more candidate sites: smaller clusters, rims and domes, pegs steeper than alpha_s"
+            }
             Self::NoMatch => "test the real section against the hole instead of a bounding sphere; more yaws",
             Self::Penetration => "move the pose out along the signed distance before it is given",
             Self::SlidOff => "let gravity act before the answer; choose sites in the hook's valley",

@@ -94,10 +94,16 @@ fn judge(case: &Case, profile: &str, params: &Params, engines: Engines) -> Row {
     let monitor = Monitor::new();
     let start = Instant::now();
     let object = analyze_object(&mesh, &params, &mut object_memory, &monitor).expect("memory is enough");
-    let supporter = analyze_supporter(&cloud.cloud().expect("samples are valid"), &params, &mut supporter_memory, &monitor)
-        .expect("memory is enough");
+    let supporter = analyze_supporter(
+        &cloud.cloud().expect("samples are valid"),
+        &params,
+        &mut supporter_memory,
+        &monitor,
+    )
+    .expect("memory is enough");
     let mut poses = [HangingPose::default(); TOP];
-    let prediction = predict(&object, &supporter, &params, &mut poses, &monitor).expect("the profile is valid");
+    let prediction =
+        predict(&object, &supporter, &params, &mut poses, &monitor).expect("the profile is valid");
     let seconds = start.elapsed().as_secs_f64();
 
     let scene = Scene::new(&case.object, &case.supporter);
