@@ -1,5 +1,7 @@
 //! Rigid shapes as the judges need them.
 
+use parry3d::transformation::vhacd::{VHACD, VHACDParameters};
+
 /// A rigid shape: its closed surface, and convex parts that fill it. Metres; a supporter stands with z up.
 #[derive(Clone, Debug, Default)]
 pub struct Solid {
@@ -34,4 +36,23 @@ pub enum Part {
         /// Half its edge lengths, metres.
         half_extents: [f32; 3],
     },
+}
+
+/// Voxels along the longest side of a mesh that is taken apart, and how hollow a part may be, as a fraction of it.
+const RESOLUTION: u32 = 80;
+const CONCAVITY: f32 = 0.002;
+
+impl Solid {
+    /// A mesh of unknown make, taken apart into parts that are about convex.
+    pub fn take_apart(vertices: Vec<[f32; 3]>, triangles: Vec<[u32; 3]>) -> Self {
+        let points: Vec<_> = vertices.iter().map(|&v| v.into()).collect();
+        let parameters =
+            VHACDParameters { resolution: RESOLUTION, concavity: CONCAVITY, ..VHACDParameters::default() };
+        let parts = VHACD::decompose(&parameters, &points, &triangles, true)
+            .compute_exact_convex_hulls(&points, &triangles)
+            .into_iter()
+            .map(|(corners, _)| Part::Hull(corners.into_iter().map(Into::into).collect()))
+            .collect();
+        Self { vertices, triangles, parts }
+    }
 }

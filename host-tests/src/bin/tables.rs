@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
 use hangpose::Params;
-use host_tests::tables::run::{Engines, run};
+use host_tests::tables::run::{Engine, Options, run};
 use host_tests::tables::{case, real, report};
 use indicatif::ProgressBar;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ struct Arguments {
     /// Seed of the sizes.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Who judges; the tables are Bullet's, and ODE is asked about the best pose.
+    /// Who judges. With both, the tables are Bullet's, and ODE is asked about the best pose.
     #[arg(long, value_enum, default_value_t = Engine::Both)]
     engine: Engine,
     /// A folder of real meshes with a manifest.json, judged as well.
@@ -35,6 +35,9 @@ struct Arguments {
     /// Where each row goes as it comes, a line of JSON each.
     #[arg(long, value_name = "FILE", default_value = "build/tables.jsonl")]
     json: PathBuf,
+    /// A folder for a picture of each best pose, at release and at rest, named after what became of it.
+    #[arg(long, value_name = "DIR")]
+    gallery: Option<PathBuf>,
     /// Keep the rows that the JSON file has, instead of beginning anew.
     #[arg(long)]
     resume: bool,
@@ -49,18 +52,11 @@ enum Profile {
     Default,
 }
 
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Engine {
-    Bullet,
-    Both,
-}
-
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
-    for file in [&arguments.out, &arguments.json] {
-        if let Some(folder) = file.parent() {
-            std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
-        }
+    let folders = [&arguments.out, &arguments.json].map(|file| file.parent());
+    for folder in folders.into_iter().chain([arguments.gallery.as_deref()]).flatten() {
+        std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     }
     if !arguments.resume && arguments.json.exists() {
         std::fs::remove_file(&arguments.json).with_context(|| arguments.json.display().to_string())?;
@@ -73,14 +69,19 @@ fn main() -> Result<()> {
             Profile::Default => ("default".into(), Params::default()),
         })
         .collect();
-    let engines = Engines { ode: arguments.engine == Engine::Both };
+    let options = Options {
+        profiles: &profiles,
+        engine: arguments.engine,
+        threads: arguments.threads,
+        record: &arguments.json,
+        gallery: arguments.gallery.as_deref(),
+    };
     let work = |cases: &[case::Case]| {
         let bar = ProgressBar::new(0);
-        let tell = |done, all| {
+        run(cases, &options, |done, all| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
-        };
-        run(cases, &profiles, engines, arguments.threads, &arguments.json, tell)
+        })
     };
     let made = work(&case::made(arguments.pairs, arguments.seed))?;
     let mut text = report::heading(&made);

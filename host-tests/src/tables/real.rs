@@ -1,10 +1,9 @@
 //! Pairs of real meshes, from a folder with a `manifest.json`.
 
 use super::case::Case;
-use crate::solid::{Part, Solid};
+use crate::solid::Solid;
 use anyhow::{Context, Result};
 use hangpose::files::read_mesh;
-use parry3d::transformation::vhacd::{VHACD, VHACDParameters};
 use serde::Deserialize;
 use std::path::Path;
 use std::sync::Arc;
@@ -19,9 +18,6 @@ struct Entry {
     scale_to_m: f32,
     up_axis: String,
 }
-
-/// Voxels along the longest side of a mesh that is taken apart.
-const RESOLUTION: u32 = 80;
 
 /// Every object on every supporter, at most `pairs` that may hang, evenly over the list, and those that cannot.
 pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
@@ -72,15 +68,6 @@ fn solid(folder: &Path, entry: &Entry) -> Result<Solid> {
         "-z" => [x, -y, -z],
         _ => [x, y, z],
     };
-    let vertices: Vec<[f32; 3]> =
-        mesh.vertices.iter().map(|v| turn(v.map(|x| x * entry.scale_to_m))).collect();
-    let points: Vec<_> = vertices.iter().map(|&v| v.into()).collect();
-    let parameters =
-        VHACDParameters { resolution: RESOLUTION, concavity: 0.002, ..VHACDParameters::default() };
-    let parts = VHACD::decompose(&parameters, &points, &mesh.triangles, true)
-        .compute_exact_convex_hulls(&points, &mesh.triangles)
-        .into_iter()
-        .map(|(corners, _)| Part::Hull(corners.into_iter().map(Into::into).collect()))
-        .collect();
-    Ok(Solid { vertices, triangles: mesh.triangles, parts })
+    let vertices = mesh.vertices.iter().map(|v| turn(v.map(|x| x * entry.scale_to_m))).collect();
+    Ok(Solid::take_apart(vertices, mesh.triangles))
 }

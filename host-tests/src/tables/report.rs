@@ -51,19 +51,29 @@ pub fn tables(title: &str, rows: &[Row]) -> String {
                 wilson(rejected, rest.len())
             );
         }
-        let mut seconds: Vec<f64> = rows.iter().map(|row| row.seconds).collect();
-        seconds.sort_by(f64::total_cmp);
-        if let Some(median) = seconds.get(seconds.len() / 2) {
+        if let Some([median, slowest]) = median_and_slowest(rows.iter().map(|row| row.seconds)) {
             let _ = writeln!(
                 text,
-                "Seconds per prediction, median: {median:.3}; slowest: {:.3}.\n",
-                seconds[seconds.len() - 1]
+                "Seconds per prediction, one core, median: {median:.3}; slowest: {slowest:.3}.\n"
+            );
+        }
+        let drops = rows.iter().flat_map(|row| &row.outcomes).map(|outcome| outcome.seconds);
+        if let Some([median, slowest]) = median_and_slowest(drops) {
+            let _ = writeln!(
+                text,
+                "Seconds per judgement, one core, median: {median:.3}; slowest: {slowest:.3}.\n"
             );
         }
         text += &agreement(&fits);
         text += &failures(&fits);
     }
     text
+}
+
+fn median_and_slowest(seconds: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    let mut seconds: Vec<f64> = seconds.collect();
+    seconds.sort_by(f64::total_cmp);
+    Some([*seconds.get(seconds.len() / 2)?, *seconds.last()?])
 }
 
 /// A line for each value of `key`, and one for all.
@@ -79,7 +89,7 @@ fn by<'r>(name: &str, rows: &[&'r Row], key: impl Fn(&'r Row) -> &'r String) -> 
         let count = |holds: &dyn Fn(&Row) -> bool| rows.iter().filter(|row| holds(row)).count();
         let first = |row: &Row, holds: fn(&Outcome) -> bool| row.first().is_some_and(holds);
         let columns = [
-            count(&|row| !row.bullet.is_empty()),
+            count(&|row| !row.outcomes.is_empty()),
             count(&|row| first(row, Outcome::success)),
             count(&|row| first(row, |outcome| outcome.success() && outcome.robust)),
             count(&|row| row.succeeds_within(5)),
@@ -93,7 +103,7 @@ fn by<'r>(name: &str, rows: &[&'r Row], key: impl Fn(&'r Row) -> &'r String) -> 
 
 fn agreement(rows: &[&Row]) -> String {
     let both: Vec<(&Outcome, &Outcome)> =
-        rows.iter().filter_map(|row| Some((row.first()?, row.ode.as_ref()?))).collect();
+        rows.iter().filter_map(|row| Some((row.first()?, row.second.as_ref()?))).collect();
     if both.is_empty() {
         return String::new();
     }

@@ -20,10 +20,10 @@ pub struct Row {
     pub rejection: Option<String>,
     /// Seconds from the models' inputs to the poses, one thread.
     pub seconds: f64,
-    /// What Bullet says of the best poses, best first, up to the first that succeeds.
-    pub bullet: Vec<Outcome>,
-    /// What ODE says of the best pose, if it was asked.
-    pub ode: Option<Outcome>,
+    /// What the judge says of the best poses, best first, up to the first that succeeds.
+    pub outcomes: Vec<Outcome>,
+    /// What a second judge says of the best pose, if it was asked.
+    pub second: Option<Outcome>,
 }
 
 /// What a judge says of one pose.
@@ -43,9 +43,26 @@ pub struct Outcome {
     pub sank: f32,
     /// How far the object turned, radians.
     pub turned: f32,
+    /// How long the judge took, seconds.
+    pub seconds: f64,
 }
 
 impl Outcome {
+    /// Of a verdict that took so many seconds.
+    pub fn new(verdict: &Verdict, seconds: f64) -> Self {
+        let Verdict { clear, holds, honest, robust, ref figures } = *verdict;
+        Self {
+            clear,
+            holds,
+            honest,
+            robust,
+            penetration: figures.penetration as f32,
+            sank: figures.sank as f32,
+            turned: figures.turned as f32,
+            seconds,
+        }
+    }
+
     /// DESIGN's success: clear, holds and honest.
     pub fn success(&self) -> bool {
         self.clear && self.holds && self.honest
@@ -63,21 +80,6 @@ impl Outcome {
             Some(Failure::Wedged)
         } else {
             None
-        }
-    }
-}
-
-impl From<&Verdict> for Outcome {
-    fn from(verdict: &Verdict) -> Self {
-        let Verdict { clear, holds, honest, robust, figures } = verdict;
-        Self {
-            clear: *clear,
-            holds: *holds,
-            honest: *honest,
-            robust: *robust,
-            penetration: figures.penetration as f32,
-            sank: figures.sank as f32,
-            turned: figures.turned as f32,
         }
     }
 }
@@ -131,14 +133,14 @@ impl Failure {
 }
 
 impl Row {
-    /// What Bullet says of the best pose.
+    /// What the judge says of the best pose.
     pub fn first(&self) -> Option<&Outcome> {
-        self.bullet.first()
+        self.outcomes.first()
     }
 
     /// Whether one of the best `count` poses succeeds.
     pub fn succeeds_within(&self, count: usize) -> bool {
-        self.bullet.iter().take(count).any(Outcome::success)
+        self.outcomes.iter().take(count).any(Outcome::success)
     }
 
     /// Why the best pose failed, if it did.

@@ -1,7 +1,8 @@
 //! Works through the cases on both cores, and writes each row as it comes.
 
 use super::case::Case;
-use super::row::{Outcome, Row};
+use super::row::{Failure, Outcome, Row};
+use crate::gallery;
 use crate::judge::{Bullet, Judge, Ode, Scene};
 use hangpose::geometry::Mesh;
 use hangpose::hanging::{HangingPose, predict};
@@ -18,23 +19,39 @@ pub const TOP: usize = 10;
 /// Points that a supporter is seen as.
 const POINTS: usize = 10_000;
 
-/// Which engines judge.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Engines {
-    /// Whether ODE judges the best pose too.
-    pub ode: bool,
+/// Who judges.
+#[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
+pub enum Engine {
+    /// Bullet.
+    Bullet,
+    /// ODE.
+    Ode,
+    /// Bullet, and ODE the best pose as well.
+    Both,
 }
 
-/// Predicts and judges every case under every profile on `threads`, appends the rows to `record`, and returns all
-/// rows that the record then holds for these cases. Rows that are in the record already are not made again.
+/// What a run is asked for.
+pub struct Options<'a> {
+    /// The constants to predict with, by name.
+    pub profiles: &'a [(String, Params)],
+    /// Who judges.
+    pub engine: Engine,
+    /// How many pairs at once.
+    pub threads: usize,
+    /// Where each row goes as it comes; rows that are there are not made again.
+    pub record: &'a Path,
+    /// Where pictures of the best poses go.
+    pub gallery: Option<&'a Path>,
+}
+
+/// Predicts and judges every case under every profile and returns the rows, those of the record included. `tell` is
+/// told how many are done, and of how many.
 pub fn run(
     cases: &[Case],
-    profiles: &[(String, Params)],
-    engines: Engines,
-    threads: usize,
-    record: &Path,
+    options: &Options,
     tell: impl Fn(usize, usize) + Sync,
 ) -> std::io::Result<Vec<Row>> {
+    let Options { profiles, record, .. } = *options;
     let mut rows = read(record)?;
     let done: HashSet<(String, String)> = rows.iter().map(|r| (r.pair.clone(), r.profile.clone())).collect();
     let file = Mutex::new(std::fs::File::options().create(true).append(true).open(record)?);
@@ -45,10 +62,10 @@ pub fn run(
         .collect();
     let (next, finished, new) = (AtomicUsize::new(0), AtomicUsize::new(0), Mutex::new(Vec::new()));
     std::thread::scope(|scope| {
-        for _ in 0..threads {
+        for _ in 0..options.threads {
             scope.spawn(|| {
                 while let Some((case, (profile, params))) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let row = judge(case, profile, params, engines);
+                    let row = judge(case, profile, params, options);
                     let line = serde_json::to_string(&row).expect("a row has no maps") + "\n";
                     let written = file.lock().expect("no thread panics").write_all(line.as_bytes());
                     if let Err(error) = written {
@@ -80,13 +97,13 @@ fn read(record: &Path) -> std::io::Result<Vec<Row>> {
     }
 }
 
-/// The supporter as a camera sees it: samples of its surface without those that lie inside another of its bodies.
+/// The supporter as it is seen: samples all over its surface.
 fn cloud_of(case: &Case) -> hangpose::files::CloudFile {
     let mesh = Mesh::new(&case.supporter.vertices, &case.supporter.triangles).expect("shapes are valid");
     sample_supporter(&mesh, POINTS, case.seed)
 }
 
-fn judge(case: &Case, profile: &str, params: &Params, engines: Engines) -> Row {
+fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row {
     let cloud = cloud_of(case);
     let params = Params { seed: case.seed, ..params.clone() };
     let mesh = Mesh::new(&case.object.vertices, &case.object.triangles).expect("shapes are valid");
@@ -94,32 +111,40 @@ fn judge(case: &Case, profile: &str, params: &Params, engines: Engines) -> Row {
     let monitor = Monitor::new();
     let start = Instant::now();
     let object = analyze_object(&mesh, &params, &mut object_memory, &monitor).expect("memory is enough");
-    let supporter = analyze_supporter(
-        &cloud.cloud().expect("samples are valid"),
-        &params,
-        &mut supporter_memory,
-        &monitor,
-    )
-    .expect("memory is enough");
+    let cloud = cloud.cloud().expect("samples are valid");
+    let supporter =
+        analyze_supporter(&cloud, &params, &mut supporter_memory, &monitor).expect("memory is enough");
     let mut poses = [HangingPose::default(); TOP];
     let prediction =
         predict(&object, &supporter, &params, &mut poses, &monitor).expect("the profile is valid");
     let seconds = start.elapsed().as_secs_f64();
 
-    let scene = Scene::new(&case.object, &case.supporter);
-    let mut bullet = Vec::new();
     // A pair that cannot hang is judged by whether anything is predicted at all.
-    if case.fits {
-        for pose in prediction.poses {
-            let outcome = Outcome::from(&Bullet::default().judge(&scene, &pose.pose));
-            bullet.push(outcome);
-            if outcome.success() {
-                break;
+    let poses = if case.fits { prediction.poses } else { &[] };
+    let scene = Scene::new(&case.object, &case.supporter);
+    let drop = |judge: &dyn Judge, pose: &HangingPose| {
+        let start = Instant::now();
+        let verdict = judge.judge(&scene, &pose.pose);
+        (Outcome::new(&verdict, start.elapsed().as_secs_f64()), verdict.figures.rest)
+    };
+    let (bullet, ode) = (Bullet::default(), Ode::default());
+    let first: &dyn Judge = if options.engine == Engine::Ode { &ode } else { &bullet };
+    let mut outcomes: Vec<Outcome> = Vec::new();
+    for pose in poses {
+        let (outcome, rest) = drop(first, pose);
+        if let Some(folder) = options.gallery.filter(|_| outcomes.is_empty()) {
+            let word = outcome.failure().map_or("success", Failure::name);
+            let path = folder.join(format!("{profile} {word} {}.png", case.name));
+            if let Err(error) = gallery::write(&path, &case.object, &case.supporter, &pose.pose, &rest) {
+                eprintln!("{}: {error}", path.display());
             }
         }
+        outcomes.push(outcome);
+        if outcome.success() {
+            break;
+        }
     }
-    let best = prediction.poses.first().filter(|_| engines.ode && case.fits);
-    let ode = best.map(|pose| Outcome::from(&Ode::default().judge(&scene, &pose.pose)));
+    let second = poses.first().filter(|_| options.engine == Engine::Both).map(|pose| drop(&ode, pose).0);
     Row {
         pair: case.name.clone(),
         profile: profile.into(),
@@ -128,7 +153,7 @@ fn judge(case: &Case, profile: &str, params: &Params, engines: Engines) -> Row {
         fits: case.fits,
         rejection: prediction.rejection.map(|rejection| format!("{:?}", rejection.stage)),
         seconds,
-        bullet,
-        ode,
+        outcomes,
+        second,
     }
 }
