@@ -49,32 +49,6 @@ pub(crate) fn closest_point([a, b, c]: &[Point; 3], p: &Point) -> Point {
     a + ab * (vb * scale) + ac * (vc * scale)
 }
 
-/// Where a ray meets the triangle, from either side, as a multiple of its direction in [0, limit]
-/// (Möller and Trumbore 1997).
-pub(crate) fn ray_hit([a, b, c]: &[Point; 3], origin: &Point, direction: &Vector, limit: f32) -> Option<f32> {
-    let (ab, ac) = (b - a, c - a);
-    let p = direction.cross(&ac);
-    let determinant = ab.dot(&p);
-    if determinant == 0.0 {
-        return None;
-    }
-    let inverse = 1.0 / determinant;
-    let s = origin - a;
-    let u = s.dot(&p) * inverse;
-    // A hair over the edge still hits, so that no ray slips between two triangles that share the edge.
-    const EDGE: f32 = 1e-6;
-    if !(-EDGE..=1.0 + EDGE).contains(&u) {
-        return None;
-    }
-    let q = s.cross(&ab);
-    let v = direction.dot(&q) * inverse;
-    if v < -EDGE || u + v > 1.0 + EDGE {
-        return None;
-    }
-    let t = ac.dot(&q) * inverse;
-    (0.0..=limit).contains(&t).then_some(t)
-}
-
 /// The solid angle of the triangle seen from `p`, in steradians, positive if `p` sees its inner side
 /// (Van Oosterom and Strackee 1983).
 pub(crate) fn solid_angle([a, b, c]: &[Point; 3], p: &Point) -> f32 {
