@@ -75,23 +75,4 @@ impl Aabb {
         }
         sum
     }
-
-    /// Where a ray enters the box, as a multiple of its direction; `None` if it misses or enters after `limit`.
-    /// `inverse_direction` comes from [`inverse`].
-    pub(crate) fn ray_entry(&self, origin: &Point, inverse_direction: &Vector, limit: f32) -> Option<f32> {
-        let (mut enter, mut leave) = (0.0_f32, limit);
-        for i in 0..3 {
-            let a = (self.min[i] - origin[i]) * inverse_direction[i];
-            let b = (self.max[i] - origin[i]) * inverse_direction[i];
-            enter = enter.max(a.min(b));
-            leave = leave.min(a.max(b));
-        }
-        // The slack covers the rounding of the products above, so that flat boxes are not missed.
-        (enter <= leave * (1.0 + 4.0 * f32::EPSILON)).then_some(enter)
-    }
-}
-
-/// One over each component, large but finite for a zero, so that a ray in the plane of a face gives no NaN.
-pub(crate) fn inverse(direction: &Vector) -> Vector {
-    direction.map(|d| if d.abs() < 1e-30 { 1e30 } else { 1.0 / d })
 }

@@ -2,7 +2,7 @@
 //!
 //! Knows only boxes; what an item is, and how far or where it is hit, comes from the caller as a closure.
 
-use super::{Aabb, Point, Vector, aabb::inverse};
+use super::{Aabb, Point, ray::Ray};
 use bytemuck::{Pod, Zeroable};
 
 /// A box with either two children or a run of items.
@@ -143,14 +143,12 @@ impl<'m> Bvh<'m> {
     /// leaf and the limit, and returns the new limit, which may only shrink; below zero ends the search.
     pub(crate) fn visit_along(
         &self,
-        origin: &Point,
-        direction: &Vector,
+        ray: &Ray,
         limit: f32,
         mut visit: impl FnMut(core::ops::Range<usize>, f32) -> f32,
     ) {
         let mut limit = limit;
-        let inverse = inverse(direction);
-        let entry = |node: u32, limit| self.nodes[node as usize].aabb().ray_entry(origin, &inverse, limit);
+        let entry = |node: u32, limit| ray.enter(&self.nodes[node as usize].aabb(), limit);
         let mut stack = heapless::Vec::<(u32, f32), { MAX_DEPTH + 2 }>::new();
         let mut next = entry(0, limit).map(|at| (0, at));
         while let Some((node, at)) = next {

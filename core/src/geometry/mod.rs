@@ -10,6 +10,7 @@ mod mass;
 pub(crate) mod mean_shift;
 mod mesh;
 mod point_tree;
+mod ray;
 mod surface;
 mod triangle;
 

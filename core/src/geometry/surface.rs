@@ -1,7 +1,7 @@
 //! A mesh arranged for queries: rays, closest points, inside and outside.
 
 use super::bvh::{Bvh, Node};
-use super::{Aabb, Mesh, Point, Vector, triangle};
+use super::{Aabb, Mesh, Point, Vector, ray::Ray, triangle};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use bytemuck::{Pod, Zeroable};
 
@@ -78,9 +78,10 @@ impl<'m> Surface<'m> {
     /// How far along the unit `direction`, in metres, a ray from `origin` first meets the mesh, from either side.
     pub fn closest_hit(&self, origin: &Point, direction: &Vector) -> Option<f32> {
         let mut closest = None;
-        self.bvh.visit_along(origin, direction, f32::MAX, |items, mut limit| {
+        let ray = Ray::new(origin, direction, &self.aabb());
+        self.bvh.visit_along(&ray, f32::MAX, |items, mut limit| {
             for corners in &self.triangles[items] {
-                if let Some(t) = triangle::ray_hit(corners, origin, direction, limit) {
+                if let Some(t) = ray.hit(corners, limit) {
                     (closest, limit) = (Some(t), t);
                 }
             }
@@ -92,10 +93,9 @@ impl<'m> Surface<'m> {
     /// Whether a ray from `origin` along `direction` meets the mesh.
     pub fn any_hit(&self, origin: &Point, direction: &Vector) -> bool {
         let mut hit = false;
-        self.bvh.visit_along(origin, direction, f32::MAX, |items, limit| {
-            hit = self.triangles[items]
-                .iter()
-                .any(|t| triangle::ray_hit(t, origin, direction, limit).is_some());
+        let ray = Ray::new(origin, direction, &self.aabb());
+        self.bvh.visit_along(&ray, f32::MAX, |items, limit| {
+            hit = self.triangles[items].iter().any(|t| ray.hit(t, limit).is_some());
             if hit { -1.0 } else { limit }
         });
         hit

@@ -15,64 +15,40 @@ pub(crate) fn scaled_normal([a, b, c]: &[Point; 3]) -> Vector {
     (b - a).cross(&(c - a))
 }
 
-/// The point of the triangle that is closest to `p`, by the region of `p` (Ericson, "Real-Time Collision
-/// Detection", 5.1.5).
+/// The point of the triangle that is closest to `p`.
+///
+/// By the region that `p` is in, as Ericson does it ("Real-Time Collision Detection", 5.1.5). But his differences of
+/// products cancel out where a triangle is thin, and lose the point by as much as the triangle is long. So every
+/// edge is asked for itself, what runs along `ab` is taken off before anything is measured across it, and what is
+/// not above the face goes to the closest edge.
 pub(crate) fn closest_point([a, b, c]: &[Point; 3], p: &Point) -> Point {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
+    let (ab, ac, bc) = (b - a, c - a, c - b);
+    let (ap, bp, cp) = (p - a, p - b, p - c);
+    let (ab_ap, ac_ap, bc_bp) = (ab.dot(&ap), ac.dot(&ap), bc.dot(&bp));
+    if ab_ap <= 0.0 && ac_ap <= 0.0 {
         return *a;
     }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
-    if d3 >= 0.0 && d4 <= d3 {
+    if ab.dot(&bp) >= 0.0 && bc_bp <= 0.0 {
         return *b;
     }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return a + ab * (d1 / (d1 - d3));
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
-    if d6 >= 0.0 && d5 <= d6 {
+    if ac.dot(&cp) >= 0.0 && bc.dot(&cp) >= 0.0 {
         return *c;
     }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return a + ac * (d2 / (d2 - d6));
+    // What is left of `ac` and `ap` across `ab`: the height of the triangle, and of `p`.
+    let ab_squared = ab.norm_squared();
+    let (along_c, along_p) = (ab.dot(&ac) / ab_squared, ab_ap / ab_squared);
+    let (height, across) = (ac - ab * along_c, ap - ab * along_p);
+    let w = across.dot(&height) / height.norm_squared();
+    let v = along_p - w * along_c;
+    if v >= 0.0 && w >= 0.0 && v + w <= 1.0 {
+        return a + ab * v + ac * w;
     }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-    }
-    let scale = 1.0 / (va + vb + vc);
-    a + ab * (vb * scale) + ac * (vc * scale)
-}
-
-/// Where a ray meets the triangle, from either side, as a multiple of its direction in [0, limit]
-/// (Möller and Trumbore 1997).
-pub(crate) fn ray_hit([a, b, c]: &[Point; 3], origin: &Point, direction: &Vector, limit: f32) -> Option<f32> {
-    let (ab, ac) = (b - a, c - a);
-    let p = direction.cross(&ac);
-    let determinant = ab.dot(&p);
-    if determinant == 0.0 {
-        return None;
-    }
-    let inverse = 1.0 / determinant;
-    let s = origin - a;
-    let u = s.dot(&p) * inverse;
-    // A hair over the edge still hits, so that no ray slips between two triangles that share the edge.
-    const EDGE: f32 = 1e-6;
-    if !(-EDGE..=1.0 + EDGE).contains(&u) {
-        return None;
-    }
-    let q = s.cross(&ab);
-    let v = direction.dot(&q) * inverse;
-    if v < -EDGE || u + v > 1.0 + EDGE {
-        return None;
-    }
-    let t = ac.dot(&q) * inverse;
-    (0.0..=limit).contains(&t).then_some(t)
+    let on_edge = |from: &Point, edge: Vector, along: f32| {
+        let point = from + edge * (along / edge.norm_squared()).clamp(0.0, 1.0);
+        ((point - p).norm_squared(), point)
+    };
+    let nearer = |x: (f32, Point), y: (f32, Point)| if y.0 < x.0 { y } else { x };
+    nearer(nearer(on_edge(a, ab, ab_ap), on_edge(a, ac, ac_ap)), on_edge(b, bc, bc_bp)).1
 }
 
 /// The solid angle of the triangle seen from `p`, in steradians, positive if `p` sees its inner side
@@ -119,6 +95,39 @@ mod tests {
             let exact = 2.0 * a.dot(&b.cross(&c)).atan2(denominator);
             let relative = (f64::from(solid_angle(&corners, &p)) - exact) / exact;
             assert!(relative.abs() < 2e-6, "{height}: {relative}");
+        }
+    }
+
+    /// Above a point of the face the way down is as long as the height, and out beside an edge as long as the offset,
+    /// however thin the triangle.
+    #[test]
+    fn thin_triangles_keep_their_closest_points() {
+        let mut random = crate::random::Random::new(3);
+        let mut unit = || f64::from(random.next_f32());
+        for width in [1.0, 1e-2, 1e-3, 1e-4, 1e-5] {
+            for _ in 0..2000 {
+                let a = nalgebra::Vector3::new(unit(), unit(), unit());
+                let along = nalgebra::Vector3::new(unit() - 0.5, unit() - 0.5, unit() + 0.1).normalize();
+                let aside = along.cross(&nalgebra::Vector3::new(1.0, unit(), 0.0)).normalize();
+                // With the short edge opposite to each of the corners in turn, or none where all are long.
+                let turn = (3.0 * unit()) as usize;
+                let mut corners = [a, a + along, a + along * 0.9 + aside * width];
+                corners.rotate_left(turn);
+                // What counts is the triangle after rounding.
+                let corners = corners.map(|corner| Point::from(corner.cast::<f32>()));
+                let [a, b, c] = corners.map(|corner| corner.coords.cast::<f64>());
+                let normal = (b - a).cross(&(c - a)).normalize();
+                let (s, t, height) = (unit().sqrt(), unit(), unit() - 0.5);
+                let on_face = a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t);
+                let p = Point::from((on_face + normal * height).cast::<f32>());
+                let distance = f64::from((closest_point(&corners, &p) - p).norm());
+                // Half a dozen roundings of coordinates around 1.
+                assert!((distance - height.abs()).abs() < 1e-6, "{width} {turn}: {distance} {height}");
+                let out = (b - a).cross(&normal).normalize() * height.abs();
+                let p = Point::from((a + (b - a) * t + out).cast::<f32>());
+                let distance = f64::from((closest_point(&corners, &p) - p).norm());
+                assert!((distance - height.abs()).abs() < 1e-6, "{width} {turn}: {distance} {height}");
+            }
         }
     }
 
