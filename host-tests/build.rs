@@ -14,7 +14,10 @@ fn main() {
             eprintln!("{package}: {error}");
         }
         let packages: Vec<_> = missing.iter().map(|(package, _)| *package).collect();
-        eprintln!("host-tests needs Debian's {} and pkg-config: `make setup` installs them", packages.join(" and "));
+        eprintln!(
+            "host-tests needs Debian's {} and pkg-config: `make setup` installs them",
+            packages.join(" and ")
+        );
         std::process::exit(1);
     }
     println!("cargo::rerun-if-changed=src/judge/engine.h");

@@ -91,7 +91,8 @@ fn cores(part: &Part) -> Vec<(Point3<f64>, f64)> {
             vec![(Point3::from(*centre).cast(), f64::from(around))]
         }
         Part::Hull(points) => {
-            let sum = points.iter().fold(Vector3::zeros(), |sum, &point| sum + Vector3::from(point).cast::<f64>());
+            let sum =
+                points.iter().fold(Vector3::zeros(), |sum, &point| sum + Vector3::from(point).cast::<f64>());
             vec![(Point3::from(sum / points.len().max(1) as f64), 0.0)]
         }
     }
