@@ -5,6 +5,7 @@
 #include <LinearMath/btConvexHullComputer.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -14,8 +15,8 @@ namespace {
 // Bullet's own tolerances are absolute and meant for metres, so the world is simulated in centimetres.
 constexpr double SCALE = 100;
 constexpr btScalar MARGIN = btScalar(0.0002 * SCALE);
-constexpr btScalar BREAKING = btScalar(0.001 * SCALE);
-constexpr btScalar TOUCHING = btScalar(0.0005 * SCALE);
+constexpr btScalar BREAKING = btScalar(0.0001 * SCALE);
+constexpr btScalar LOAD = btScalar(0.01 * SCALE);  // what counts as bearing, as an acceleration: a thousandth of weight
 
 btVector3 vector(const double* v, double scale = 1) {
     return {btScalar(v[0] * scale), btScalar(v[1] * scale), btScalar(v[2] * scale)};
@@ -58,6 +59,7 @@ struct World {
         btRigidBody::btRigidBodyConstructionInfo of_body(static_cast<btScalar>(setup.mass), nullptr, &compound,
                                                          vector(setup.inertia, SCALE * SCALE));
         of_body.m_friction = friction;  // Bullet multiplies the two: the fixed shapes have 1
+        of_body.m_angularDamping = btScalar(1 - std::exp(-setup.damping));  // Bullet's is the part lost per second
         body = std::make_unique<btRigidBody>(of_body);
         body->setActivationState(DISABLE_DEACTIVATION);
     }
@@ -82,11 +84,12 @@ struct World {
         shapes.push_back(std::move(shape));
     }
 
-    bool touching() {
+    bool loaded() {
+        btScalar least = LOAD * time_step / body->getInvMass();
         for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
             const btPersistentManifold* manifold = dispatcher.getManifoldByIndexInternal(i);
             for (int j = 0; j < manifold->getNumContacts(); ++j)
-                if (manifold->getContactPoint(j).getDistance() <= TOUCHING) return true;
+                if (manifold->getContactPoint(j).getAppliedImpulse() > least) return true;
         }
         return false;
     }
@@ -153,12 +156,12 @@ void pull(void* handle, const double* gravity) { of(handle).world.setGravity(sca
 
 uint32_t step(void* handle, uint32_t count) {
     World& it = of(handle);
-    uint32_t touched = 0;
+    uint32_t loaded = 0;
     for (uint32_t i = 0; i < count; ++i) {
         it.world.stepSimulation(it.time_step, 0);
-        touched += it.touching();
+        loaded += it.loaded();
     }
-    return touched;
+    return loaded;
 }
 
 void read(void* handle, State* state) {

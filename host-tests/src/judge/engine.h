@@ -11,6 +11,7 @@ struct Setup {
     double inertia[3];  // about the principal axes
     double friction;
     double time_step;
+    double damping;  // of rotation, per second
 };
 
 struct State {
@@ -30,7 +31,7 @@ struct Engine {
                      size_t triangle_count);  // null: add_hull instead
     void (*place)(void*, const State*);       // forgets every contact
     void (*pull)(void*, const double* gravity);
-    uint32_t (*step)(void*, uint32_t count);  // in how many of the steps the body touched something
+    uint32_t (*step)(void*, uint32_t count);  // in how many of the steps something bore on the body
     void (*read)(void*, State*);
     double (*penetration)(void*);  // the deepest, here and now; 0 when nothing overlaps
     void (*destroy)(void*);

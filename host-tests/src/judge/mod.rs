@@ -21,6 +21,9 @@ use nalgebra::Isometry3;
 
 /// Of the object against the supporter.
 pub const FRICTION: f64 = 0.4;
+/// Per second. Rigid bodies that roll on each other swing for ever; things swing out, because they rub, give and stir
+/// the air. Falling is not slowed.
+pub const DAMPING: f64 = 1.0;
 /// Metres per second squared, along -z of the supporter.
 pub const GRAVITY: f64 = 9.81;
 
@@ -35,6 +38,10 @@ pub struct Scene<'a> {
     pub mass: Mass,
     /// The coefficient of friction: [`FRICTION`] unless changed.
     pub friction: f64,
+    /// The rate at which rotation dies down, per second: [`DAMPING`] unless changed.
+    pub damping: f64,
+    /// Whether to tilt gravity too, which takes most of the time. Nothing is robust if not.
+    pub tilt: bool,
 }
 
 impl<'a> Scene<'a> {
@@ -44,7 +51,14 @@ impl<'a> Scene<'a> {
     ///
     /// If the object's surface encloses no volume.
     pub fn new(object: &'a Solid, supporter: &'a Solid) -> Self {
-        Self { object, supporter, mass: Mass::of(object, 0.2), friction: FRICTION }
+        Self {
+            object,
+            supporter,
+            mass: Mass::of(object, 0.2),
+            friction: FRICTION,
+            damping: DAMPING,
+            tilt: true,
+        }
     }
 
     /// The object's centre of mass, in its own coordinates.

@@ -16,6 +16,7 @@ constexpr int MOST_FOUND = 256;     // contacts of one pair of shapes as ODE fin
 constexpr size_t MOST_KEPT = 16;    // contacts of the body as they are solved
 constexpr double MERGE = 0.001;     // contacts closer than this that push alike are one
 constexpr double ALIKE = 0.95;      // the cosine up to which they push alike
+constexpr double LOAD = 0.01;       // what counts as bearing, as an acceleration: a thousandth of weight
 constexpr double LAYER = 0.00005;   // contacts may sink this deep, so that they stay contacts
 
 // ODE may be built without thread-local data, as Debian's is. Then the caches of its triangle colliders are shared by
@@ -53,9 +54,10 @@ struct World {
     std::vector<dContactGeom> found = std::vector<dContactGeom>(MOST_FOUND);
     std::vector<dContactGeom> all;
     std::vector<dContactGeom> kept;
-    double time_step, friction;
+    std::array<dJointFeedback, MOST_KEPT> forces;
+    Setup setup;
 
-    explicit World(const Setup& setup) : time_step(setup.time_step), friction(setup.friction) {
+    explicit World(const Setup& given) : setup(given) {
         dWorldSetStepThreadingImplementation(world, dThreadingImplementationGetFunctions(threading), threading);
         dMass mass;
         dMassSetParameters(&mass, setup.mass, 0, 0, 0, setup.inertia[0], setup.inertia[1], setup.inertia[2], 0, 0, 0);
@@ -65,6 +67,8 @@ struct World {
         dWorldSetContactMaxCorrectingVel(world, 0.1);
         dWorldSetContactSurfaceLayer(world, LAYER);
         dWorldSetAutoDisableFlag(world, 0);
+        dBodySetAngularDamping(body, 1 - std::exp(-setup.damping * setup.time_step));
+        dBodySetAngularDampingThreshold(body, 0);
     }
 
     ~World() {
@@ -188,22 +192,27 @@ void pull(void* handle, const double* gravity) {
 
 uint32_t step(void* handle, uint32_t count) {
     World& it = of(handle);
-    uint32_t touched = 0;
+    uint32_t loaded = 0;
     for (uint32_t i = 0; i < count; ++i) {
         it.collide();
         it.thin_out();
-        for (const dContactGeom& geometry : it.kept) {
+        for (size_t j = 0; j < it.kept.size(); ++j) {
             dContact contact = {};
-            contact.geom = geometry;
+            contact.geom = it.kept[j];
             contact.surface.mode = dContactApprox1;
-            contact.surface.mu = it.friction;
-            dJointAttach(dJointCreateContact(it.world, it.joints, &contact), it.body, nullptr);
+            contact.surface.mu = it.setup.friction;
+            dJointID joint = dJointCreateContact(it.world, it.joints, &contact);
+            dJointAttach(joint, it.body, nullptr);
+            dJointSetFeedback(joint, &it.forces[j]);
         }
-        dWorldStep(it.world, it.time_step);
+        dWorldStep(it.world, it.setup.time_step);
         dJointGroupEmpty(it.joints);
-        touched += !it.kept.empty();
+        bool bears = false;
+        for (size_t j = 0; j < it.kept.size(); ++j)
+            bears |= dCalcVectorLength3(it.forces[j].f1) > LOAD * it.setup.mass;
+        loaded += bears;
     }
-    return touched;
+    return loaded;
 }
 
 void read(void* handle, State* state) {

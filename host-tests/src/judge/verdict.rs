@@ -48,12 +48,13 @@ pub struct Verdict {
     pub clear: bool,
     /// After 4 s it still touches the supporter, has sunk no further than it may, and is slow.
     pub holds: bool,
-    /// With gravity reversed it comes free within 1.5 s: at some moment it touches nothing and has moved. What is
+    /// With gravity reversed it comes free within 1.5 s: at some moment nothing bears on it and
+    /// it has moved. What is
     /// wedged through the supporter does not. (It need not get away: a ring lifts off a peg, and then hangs upwards.)
     /// False when it does not hold.
     pub honest: bool,
     /// From rest it stays through gravity tilted by 21.8 degrees towards each of four sides. False when it does not
-    /// hold.
+    /// hold, or was not tried.
     pub robust: bool,
     /// What the above was concluded from.
     pub figures: Figures,
@@ -132,7 +133,7 @@ pub(super) fn examine(world: &mut World, scene: &Scene, release: &Isometry3<f64>
     let tilts = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]].map(|[x, y]| {
         let (across, down) = limits.tilt.sin_cos();
         let gravity = Vector3::new(x * across, y * across, -down) * GRAVITY;
-        holds && {
+        scene.tilt && holds && {
             let phase = trial.phase(&settled.state, gravity, limits.tilting);
             phase.touches && phase.sank < limit
         }

@@ -1,7 +1,7 @@
 //! A rigid body among fixed shapes in a physics engine. All that is unsafe about the judges is here.
 
 use super::buried::Buried;
-use super::{GRAVITY, Scene};
+use super::{GRAVITY, Mass, Scene};
 use crate::solid::{Part, Solid};
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use std::ffi::c_void;
@@ -14,6 +14,7 @@ struct Setup {
     inertia: [f64; 3],
     friction: f64,
     time_step: f64,
+    damping: f64,
 }
 
 #[repr(C)]
@@ -78,11 +79,11 @@ pub struct World {
 
 impl World {
     pub(super) fn new(engine: &'static Engine, scene: &Scene, time_step: f64) -> Self {
-        let setup =
-            Setup { mass: scene.mass.mass, inertia: scene.mass.inertia, friction: scene.friction, time_step };
+        let Mass { mass, inertia, frame } = scene.mass;
+        let setup = Setup { mass, inertia, friction: scene.friction, time_step, damping: scene.damping };
         // SAFETY: `setup` outlives the call, which keeps no pointer to it.
         let handle = unsafe { (engine.create)(&setup) };
-        let mut world = Self { engine, handle, time_step, frame: scene.mass.frame, buried: None };
+        let mut world = Self { engine, handle, time_step, frame, buried: None };
         world.pull(Vector3::new(0.0, 0.0, -GRAVITY));
         world
     }
@@ -186,13 +187,13 @@ impl World {
         unsafe { (self.engine.pull)(self.handle, gravity.as_ptr()) }
     }
 
-    /// Lets time pass, in whole steps and at least one. Returns whether the body touched something in each step
-    /// (1), in none (0) or in some: the share of them.
+    /// Lets time pass, in whole steps and at least one. Returns in what share of the steps
+    /// something bore on the body: to graze is not enough.
     pub fn pass(&mut self, seconds: f64) -> f64 {
         let steps = (seconds / self.time_step).round().max(1.0) as u32;
         // SAFETY: the handle is alive.
-        let touched = unsafe { (self.engine.step)(self.handle, steps) };
-        f64::from(touched) / f64::from(steps)
+        let loaded = unsafe { (self.engine.step)(self.handle, steps) };
+        f64::from(loaded) / f64::from(steps)
     }
 
     /// Where the body is now.
