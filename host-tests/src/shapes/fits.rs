@@ -20,6 +20,7 @@ const UPWARD: f64 = 0.35;
 /// - hung so, by its opening's middle at the outer end of the bar's usable length and with either face to the wall, no
 ///   vertex of it is behind the wall's plane or below the stand's foot; it may lean on the wall by up to 20°; and the
 ///   bar is long enough for the thickness of what lies on it;
+/// - beside a bar with a neighbour, what is not below the bar ends before the neighbour;
 /// - a hollow needs a bar that points up by 20° or more, reaches a quarter as deep as the hollow, and ends as far from
 ///   the wall as half the hollow's radius;
 /// - a neck needs a gap that it passes and its head does not, by 4 mm on each side.
@@ -82,7 +83,7 @@ fn goes_over(object: &HangObject, opening: &Opening, centroid: V, bar: &Bar) -> 
         let [cos, sin] = turn(lean);
         let out = scale(ahead, face);
         let hung =
-            [along(scale(out, cos), -sin, down), scale(aside, face), along(scale(down, cos), sin, out)];
+            [along(scale(out, cos), sin, down), scale(aside, face), along(scale(down, cos), -sin, out)];
         has_room(object, opening, hung, bar)
     })
 }
@@ -101,12 +102,12 @@ fn has_room(object: &HangObject, opening: &Opening, [out, aside, down]: [V; 3], 
         return false;
     }
     let vertices = || object.solid.vertices.iter().map(|&v| sub(double(v), centre));
-    // What lies on the bar is what is near the top of the opening.
+    // What lies on the bar is what is near the top of the opening, but not a bag's other loop.
+    let near = 1.3 * f64::from(opening.clear_radius) + 0.003;
     let thickness = vertices()
-        .filter(|&v| {
-            length(across(v, axis)) < 1.3 * f64::from(opening.clear_radius) + 0.003 && dot(v, down) < 0.0
-        })
+        .filter(|&v| length(across(v, axis)) < near && dot(v, down) < 0.0)
         .map(|v| 2.0 * dot(v, axis).abs())
+        .filter(|&thickness| thickness < 0.06)
         .fold(0.0, f64::max);
     if thickness > 2.0 * f64::from(bar.length) && bar.has_free_end {
         return false;
@@ -119,7 +120,10 @@ fn has_room(object: &HangObject, opening: &Opening, [out, aside, down]: [V; 3], 
         let at = add(lowered, turned);
         let is_before_wall =
             bar.wall.is_none_or(|(normal, distance)| dot(at, double(normal)) > -f64::from(distance));
-        is_before_wall && at[2] > -f64::from(bar.drop)
+        let is_below_neighbour = bar.gap == 0.0
+            || at[2] < lowered[2] + clear - 2.0 * f64::from(bar.radius)
+            || dot(at, sideways).abs() < f64::from(bar.gap + bar.radius);
+        is_before_wall && is_below_neighbour && at[2] > -f64::from(bar.drop)
     })
 }
 

@@ -10,6 +10,7 @@ mod fits;
 mod objects;
 mod openings;
 mod random;
+mod sections;
 mod supporters;
 mod vector;
 

@@ -64,17 +64,22 @@ struct Near {
     half_length: f64,
     /// How far from the centre it knows.
     reach: f64,
-    triangles: Vec<[V; 3]>,
+    /// Each with the middle and the radius of a ball around it.
+    triangles: Vec<([V; 3], V, f64)>,
 }
 
 impl Near {
     fn new(solid: &Solid, centre: V, axis: V, half_length: f64) -> Self {
+        let with_ball = |t: [V; 3]| {
+            let middle = scale(add(add(t[0], t[1]), t[2]), 1.0 / 3.0);
+            (t, middle, t.iter().map(|&p| length(sub(p, middle))).fold(0.0, f64::max))
+        };
         let corners = solid.triangles.iter().map(|t| t.map(|v| double(solid.vertices[v as usize])));
-        let mut near = Self { axis, half_length, reach: 0.0, triangles: corners.collect() };
+        let mut near = Self { axis, half_length, reach: 0.0, triangles: corners.map(with_ball).collect() };
         // A bar this far away is at most this much wider than the one at the centre.
         near.reach = 3.0 * near.clearance(centre);
         let far = half_length + 2.4 * near.reach;
-        near.triangles.retain(|t| length(sub(centre, nearest(centre, t))) < far);
+        near.triangles.retain(|(t, ..)| length(sub(centre, nearest(centre, t))) < far);
         near
     }
 
@@ -82,9 +87,15 @@ impl Near {
     fn clearance(&self, centre: V) -> f64 {
         let steps = if self.half_length > HALF_LENGTH { 8 } else { 2 };
         let at = |i: i32| along(centre, self.half_length * f64::from(i) / f64::from(steps), self.axis);
-        let distance =
-            |p: V| self.triangles.iter().map(|t| length(sub(p, nearest(p, t)))).fold(f64::INFINITY, f64::min);
-        (-steps..=steps).map(|i| distance(at(i))).fold(f64::INFINITY, f64::min)
+        let mut least = f64::INFINITY;
+        for p in (-steps..=steps).map(at) {
+            for (t, middle, radius) in &self.triangles {
+                if length(sub(p, *middle)) < least + radius {
+                    least = least.min(length(sub(p, nearest(p, t))));
+                }
+            }
+        }
+        least
     }
 }
 

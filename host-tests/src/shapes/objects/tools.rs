@@ -1,6 +1,7 @@
 //! Tools and things on walls.
 
-use super::super::builder::{Builder, ellipse};
+use super::super::builder::Builder;
+use super::super::sections::ellipse;
 use super::super::vector::{V, X, Y, Z, along, arc, scale, turn};
 use super::{HangObject, Random};
 

@@ -1,6 +1,7 @@
 //! Vessels with handles.
 
-use super::super::builder::{Builder, ellipse, rectangle};
+use super::super::builder::Builder;
+use super::super::sections::{ellipse, rectangle};
 use super::super::vector::{V, X, Y, Z, arc, bezier, scale};
 use super::{HangObject, OpeningKind, Random};
 

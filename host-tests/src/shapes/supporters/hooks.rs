@@ -63,14 +63,14 @@ pub(super) fn s_hook(random: &mut Random) -> Support {
     builder.tube(&[[-0.001, 0.0, 0.0], [off + 0.06, 0.0, 0.0]], rail.min(0.012));
     let sag = upper - radius - rail.min(0.012);
     plate(&mut builder, [0.0, 0.0], [0.06, 0.08], 0.012);
-    let neck = random.range(0.01, 0.04);
+    let neck = random.range(0.03, 0.07);
     let mut path: Vec<V> = arc([off, 0.0, -sag], scale(Y, upper), scale(Z, upper), [200.0, 0.0], 16);
-    let centre = [off, upper - lower, -sag - neck];
-    path.extend(arc(centre, scale(Y, lower), scale(Z, lower), [0.0, -200.0], 16));
+    let centre = [off, upper + lower, -sag - neck];
+    path.extend(arc(centre, scale(Y, lower), scale(Z, lower), [180.0, 380.0], 16));
     builder.tube(&path, radius);
     let lowest = add(centre, [0.0, 0.0, -lower]);
-    // Its mouth is on the far side of the neck, so that holes come from -y.
-    let mut ground = bar(add(lowest, [0.0, 0.3 * lower, 0.0]), add(lowest, [0.0, -0.3 * lower, 0.0]), radius);
+    // Its mouth looks to +y, the upper one's to -y.
+    let mut ground = bar(add(lowest, [0.0, -0.3 * lower, 0.0]), add(lowest, [0.0, 0.3 * lower, 0.0]), radius);
     ground.wall = Some((super::super::vector::single(X), off as f32));
     Support { solid: builder.finish(), bars: vec![ground] }
 }

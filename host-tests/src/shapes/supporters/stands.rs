@@ -133,7 +133,9 @@ pub(super) fn fork(random: &mut Random) -> Support {
         let mut lower = bar(path[3], path[9], radius);
         lower.gap = (apart - 2.0 * radius) as f32;
         lower.wall = Some((single(X), (path[3][0] - arm - 1.3 * radius) as f32));
-        bars.extend([lower, bar(path[11], path[14], radius)]);
+        let mut tip = bar(path[11], path[14], radius);
+        tip.gap = lower.gap;
+        bars.extend([lower, tip]);
     }
     Support { solid: builder.finish(), bars }
 }
