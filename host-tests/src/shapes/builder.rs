@@ -1,5 +1,6 @@
 //! Bodies from a few rules, mesh and convex parts at once, so that the two cannot drift apart.
 
+use super::sections::{circle, corners_of};
 use super::vector::{V, X, Y, Z, across, add, along, cross, dot, length, scale, single, sub, turn, unit};
 use crate::solid::{Part, Solid};
 
@@ -18,34 +19,7 @@ enum Convex {
     Cuboid(V, [V; 3], V),
 }
 
-/// How many corners the polygon has that stands for a circle: within about 0.2 mm of it up to a radius of 25 mm.
-pub(crate) fn corners_of(radius: f64) -> usize {
-    match radius {
-        r if r < 0.002 => 6,
-        r if r < 0.008 => 12,
-        r if r < 0.014 => 16,
-        _ => 24,
-    }
-}
-
-/// A circle's polygon.
-pub(crate) fn circle(radius: f64) -> Vec<[f64; 2]> {
-    ellipse(radius, radius)
-}
-
-/// An ellipse's polygon.
-pub(crate) fn ellipse(a: f64, b: f64) -> Vec<[f64; 2]> {
-    let n = corners_of(a.max(b));
-    let corner = |i| turn(360.0 * i as f64 / n as f64);
-    (0..n).map(corner).map(|[cos, sin]| [a * cos, b * sin]).collect()
-}
-
-/// A rectangle of these edge lengths about the origin.
-pub(crate) fn rectangle(a: f64, b: f64) -> Vec<[f64; 2]> {
-    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| [x * a / 2.0, y * b / 2.0]).to_vec()
-}
-
-/// Tangents along a path, which is closed if it ends where it began; and how many points of it are distinct.
+/// Tangents at the distinct points of a path, and whether it is closed, which is if it ends where it began.
 fn tangents(path: &[V]) -> (Vec<V>, bool) {
     let is_closed = length(sub(path[0], path[path.len() - 1])) < 1e-9;
     let n = path.len() - usize::from(is_closed);

@@ -1,6 +1,6 @@
 //! Whether an object can hang on a supporter, marked from how the two were made.
 
-use super::vector::{V, Z, across, along, cross, dot, double, length, sub, unit};
+use super::vector::{V, X, Y, Z, across, add, along, cross, dot, double, length, scale, sub, turn, unit};
 use super::{Bar, HangObject, Opening, OpeningKind, Support};
 use crate::solid::Solid;
 
@@ -18,9 +18,11 @@ const UPWARD: f64 = 0.35;
 /// - a hole's or hook's widest bar is shortened by the cosine of the angle at which the bar crosses it when the object
 ///   hangs straight down from it, and by that of the bar's tilt;
 /// - hung so, by its opening's middle at the outer end of the bar's usable length and with either face to the wall, no
-///   vertex of it is behind the wall's plane or below the stand's foot, and the bar is long enough for the
-///   thickness of what lies on it;
-/// - a hollow needs a bar that points up by 20° or more and reaches half way to its ground;
+///   vertex of it is behind the wall's plane or below the stand's foot; it may lean on the wall by up to 20°; and the
+///   bar is long enough for the thickness of what lies on it;
+/// - beside a bar with a neighbour, what is not below the bar ends before the neighbour;
+/// - a hollow needs a bar that points up by 20° or more, reaches a quarter as deep as the hollow, and ends as far from
+///   the wall as half the hollow's radius;
 /// - a neck needs a gap that it passes and its head does not, by 4 mm on each side.
 pub fn fits(object: &HangObject, support: &Support) -> bool {
     let centroid = centroid(&object.solid);
@@ -52,6 +54,10 @@ fn covers(object: &HangObject, opening: &Opening, bar: &Bar) -> bool {
         && f64::from(bar.direction[2]) > UPWARD
         && f64::from(opening.clear_radius) > f64::from(bar.pass_radius) + PLAY
         && f64::from(bar.length) > 0.5 * depth
+        && bar.wall.is_none_or(|(normal, distance)| {
+            let reach = f64::from(distance + bar.length * dot(double(bar.direction), double(normal)) as f32);
+            reach > f64::from(opening.clear_radius)
+        })
 }
 
 fn goes_over(object: &HangObject, opening: &Opening, centroid: V, bar: &Bar) -> bool {
@@ -61,46 +67,68 @@ fn goes_over(object: &HangObject, opening: &Opening, centroid: V, bar: &Bar) -> 
     }
     // As it hangs: the centroid straight below the opening, the opening's axis along the bar as seen from above.
     let (centre, axis) = (double(opening.centre), double(opening.axis));
-    let reach = sub(centroid, centre);
-    if length(reach) < 1e-6 || length(across(axis, unit(reach))) < 0.3 {
-        return false;
+    let mut reach = sub(centroid, centre);
+    if length(across(reach, axis)) < 1e-3 * f64::from(opening.clear_radius) {
+        // A ring hangs anyhow.
+        reach = across(if axis[0].abs() < 0.7 { X } else { Y }, axis);
     }
     let down = unit(reach);
-    let ahead = unit(across(axis, down));
-    let aside = cross(ahead, down);
-    let clear =
-        f64::from(opening.clear_radius) * dot(axis, ahead).abs() * length([direction[0], direction[1], 0.0]);
+    let ahead = across(axis, down);
+    if length(ahead) < 0.3 {
+        return false;
+    }
+    let (ahead, aside) = (unit(ahead), cross(unit(ahead), down));
+    FACES_AND_LEANS.into_iter().any(|(face, lean)| {
+        // The bar's way out is the object's `out`; leaning, its lower end is further out.
+        let [cos, sin] = turn(lean);
+        let out = scale(ahead, face);
+        let hung =
+            [along(scale(out, cos), sin, down), scale(aside, face), along(scale(down, cos), -sin, out)];
+        has_room(object, opening, hung, bar)
+    })
+}
+
+/// Which side of the object is at the wall, and by how many degrees it leans on it.
+const FACES_AND_LEANS: [(f64, f64); 6] =
+    [(1.0, 0.0), (-1.0, 0.0), (1.0, 10.0), (-1.0, 10.0), (1.0, 20.0), (-1.0, 20.0)];
+
+/// Whether the object, hung with these directions of its own out from the wall, aside and down, is wide enough for the
+/// bar and touches neither wall nor foot.
+fn has_room(object: &HangObject, opening: &Opening, [out, aside, down]: [V; 3], bar: &Bar) -> bool {
+    let (centre, axis, direction) = (double(opening.centre), double(opening.axis), double(bar.direction));
+    let level = length([direction[0], direction[1], 0.0]);
+    let clear = f64::from(opening.clear_radius) * dot(axis, out).abs() * level;
     if clear < f64::from(bar.pass_radius) + PLAY {
         return false;
     }
-    let flat = unit([direction[0], direction[1], 0.0]);
-    let lower = clear - f64::from(bar.radius);
-    let place = along(double(bar.position), f64::from(bar.length), direction);
-    // What lies on the bar is what is near the top of the opening.
     let vertices = || object.solid.vertices.iter().map(|&v| sub(double(v), centre));
+    // What lies on the bar is what is near the top of the opening, but not a bag's other loop.
+    let near = 1.3 * f64::from(opening.clear_radius) + 0.003;
     let thickness = vertices()
-        .filter(|&v| {
-            length(across(v, axis)) < 1.3 * f64::from(opening.clear_radius) + 0.003 && dot(v, down) < 0.0
-        })
-        .map(|v| 2.0 * dot(v, ahead).abs())
+        .filter(|&v| length(across(v, axis)) < near && dot(v, down) < 0.0)
+        .map(|v| 2.0 * dot(v, axis).abs())
+        .filter(|&thickness| thickness < 0.06)
         .fold(0.0, f64::max);
-    if opening.kind == OpeningKind::Hole && thickness > 2.0 * f64::from(bar.length) {
+    if thickness > 2.0 * f64::from(bar.length) && bar.has_free_end {
         return false;
     }
-    [-1.0, 1.0].iter().any(|&face| {
-        vertices().all(|v| {
-            let sideways = along([0.0; 3], face * dot(v, aside), cross(flat, Z));
-            let hung = along(along(sideways, face * dot(v, ahead), flat), -dot(v, down) - lower, Z);
-            let at = sub(along(hung, 1.0, place), double(bar.position));
-            let is_before_wall =
-                bar.wall.is_none_or(|(normal, distance)| dot(at, double(normal)) > -f64::from(distance));
-            is_before_wall && at[2] > -f64::from(bar.drop)
-        })
+    let flat = unit([direction[0], direction[1], 0.0]);
+    let sideways = cross(flat, Z);
+    let lowered = along(scale(direction, f64::from(bar.length)), f64::from(bar.radius) - clear, Z);
+    vertices().all(|v| {
+        let turned = along(along(scale(flat, dot(v, out)), dot(v, aside), sideways), -dot(v, down), Z);
+        let at = add(lowered, turned);
+        let is_before_wall =
+            bar.wall.is_none_or(|(normal, distance)| dot(at, double(normal)) > -f64::from(distance));
+        let is_below_neighbour = bar.gap == 0.0
+            || at[2] < lowered[2] + clear - 2.0 * f64::from(bar.radius)
+            || dot(at, sideways).abs() < f64::from(bar.gap + bar.radius);
+        is_before_wall && is_below_neighbour && at[2] > -f64::from(bar.drop)
     })
 }
 
 /// The middle of the volume; where bodies overlap it counts twice.
-pub(crate) fn centroid(solid: &Solid) -> V {
+fn centroid(solid: &Solid) -> V {
     let mut sum = ([0.0; 3], 0.0);
     for t in &solid.triangles {
         let [a, b, c] = t.map(|v| double(solid.vertices[v as usize]));

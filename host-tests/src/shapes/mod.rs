@@ -10,6 +10,7 @@ mod fits;
 mod objects;
 mod openings;
 mod random;
+mod sections;
 mod supporters;
 mod vector;
 
@@ -32,7 +33,7 @@ pub struct ObjectKind {
 impl ObjectKind {
     /// The one that this seed names: the same on every machine.
     pub fn make(&self, seed: u64) -> HangObject {
-        (self.make)(&mut Random::new(seed))
+        (self.make)(&mut Random::named(self.name, seed))
     }
 }
 
@@ -46,7 +47,7 @@ pub struct SupporterKind {
 impl SupporterKind {
     /// The one that this seed names: the same on every machine.
     pub fn make(&self, seed: u64) -> Support {
-        (self.make)(&mut Random::new(seed))
+        (self.make)(&mut Random::named(self.name, seed))
     }
 }
 
@@ -109,7 +110,8 @@ pub struct Bar {
     pub length: f32,
     /// Its own radius, metres.
     pub radius: f32,
-    /// The radius that an opening must pass on the way to it, as of a ball at its end; at least `radius`.
+    /// The radius that an opening must pass on the way to it, as of a ball at its end; at least `radius`,
+    /// and infinite where nothing goes around it, but it holds a [`OpeningKind::Neck`].
     pub pass_radius: f32,
     /// How far `direction` points above the horizon, radians.
     pub tilt: f32,

@@ -5,7 +5,7 @@ use super::vector::{V, X, Y, across, add, along, cross, dot, double, length, sca
 use super::{HangObject, Opening, OpeningKind};
 use crate::solid::Solid;
 
-/// Half the length of the bar that a hole is measured with.
+/// Half the length of the bar that a hole is measured with, unless it is wide across the bar.
 const HALF_LENGTH: f64 = 0.005;
 
 impl HangObject {
@@ -15,17 +15,23 @@ impl HangObject {
     }
 
     /// With a hole that has `inside` inside; its middle is where the widest bar along `axis` passes.
-    pub(crate) fn hole(mut self, inside: V, axis: V) -> Self {
+    pub(crate) fn hole(self, inside: V, axis: V) -> Self {
+        self.hole_through(inside, axis, HALF_LENGTH)
+    }
+
+    /// With a hole that a bar passes which reaches `half_length` to both sides of `inside`: a bail's, above a rim.
+    pub(crate) fn hole_through(mut self, inside: V, axis: V, half_length: f64) -> Self {
         let axis = unit(axis);
-        let near = Near::new(&self.solid, inside, axis);
+        let near = Near::new(&self.solid, inside, axis, half_length);
         let u = unit(across(if axis[0].abs() < 0.7 { X } else { Y }, axis));
         let v = cross(axis, u);
         let (mut centre, mut widest) = (inside, near.clearance(inside));
         let mut step = widest / 2.0;
-        while step > 5e-5 {
+        while step > 1e-4 {
             let moved = (0..8).map(|i| super::vector::turn(45.0 * f64::from(i)));
             let best = moved
                 .map(|[cos, sin]| along(along(centre, step * cos, u), step * sin, v))
+                .filter(|&p| length(sub(p, inside)) < near.reach)
                 .map(|p| (near.clearance(p), p))
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             match best {
@@ -40,7 +46,7 @@ impl HangObject {
     /// With a hook about `centre`, whose mouth lets nothing wider than `mouth` in.
     pub(crate) fn hook(mut self, centre: V, axis: V, mouth: f64) -> Self {
         let axis = unit(axis);
-        let clear = Near::new(&self.solid, centre, axis).clearance(centre).min(mouth / 2.0);
+        let clear = Near::new(&self.solid, centre, axis, HALF_LENGTH).clearance(centre).min(mouth / 2.0);
         self.push(OpeningKind::Hook, centre, axis, clear);
         self
     }
@@ -55,27 +61,41 @@ impl HangObject {
 /// The triangles that a bar about a place might touch.
 struct Near {
     axis: V,
-    triangles: Vec<[V; 3]>,
+    half_length: f64,
+    /// How far from the centre it knows.
+    reach: f64,
+    /// Each with the middle and the radius of a ball around it.
+    triangles: Vec<([V; 3], V, f64)>,
 }
 
 impl Near {
-    fn new(solid: &Solid, centre: V, axis: V) -> Self {
+    fn new(solid: &Solid, centre: V, axis: V, half_length: f64) -> Self {
+        let with_ball = |t: [V; 3]| {
+            let middle = scale(add(add(t[0], t[1]), t[2]), 1.0 / 3.0);
+            (t, middle, t.iter().map(|&p| length(sub(p, middle))).fold(0.0, f64::max))
+        };
         let corners = solid.triangles.iter().map(|t| t.map(|v| double(solid.vertices[v as usize])));
-        let mut triangles: Vec<_> = corners.collect();
-        triangles.retain(|t| {
-            let heights = t.map(|p| dot(sub(p, centre), axis));
-            heights.iter().any(|&h| h > -2.0 * HALF_LENGTH) && heights.iter().any(|&h| h < 2.0 * HALF_LENGTH)
-        });
-        Self { axis, triangles }
+        let mut near = Self { axis, half_length, reach: 0.0, triangles: corners.map(with_ball).collect() };
+        // A bar this far away is at most this much wider than the one at the centre.
+        near.reach = 3.0 * near.clearance(centre);
+        let far = half_length + 2.4 * near.reach;
+        near.triangles.retain(|(t, ..)| length(sub(centre, nearest(centre, t))) < far);
+        near
     }
 
     /// The radius of the widest bar about `centre`.
     fn clearance(&self, centre: V) -> f64 {
-        let ends = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|s| along(centre, s * HALF_LENGTH, self.axis));
-        let distance = |p: &V| {
-            self.triangles.iter().map(|t| length(sub(*p, nearest(*p, t)))).fold(f64::INFINITY, f64::min)
-        };
-        ends.iter().map(distance).fold(f64::INFINITY, f64::min)
+        let steps = if self.half_length > HALF_LENGTH { 8 } else { 2 };
+        let at = |i: i32| along(centre, self.half_length * f64::from(i) / f64::from(steps), self.axis);
+        let mut least = f64::INFINITY;
+        for p in (-steps..=steps).map(at) {
+            for (t, middle, radius) in &self.triangles {
+                if length(sub(p, *middle)) < least + radius {
+                    least = least.min(length(sub(p, nearest(p, t))));
+                }
+            }
+        }
+        least
     }
 }
 

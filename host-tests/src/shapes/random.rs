@@ -9,6 +9,15 @@ impl Random {
         Self(seed)
     }
 
+    /// Starts from a seed and a name, so that things of one seed do not all come out alike.
+    pub fn named(name: &str, seed: u64) -> Self {
+        // FNV-1a.
+        let hash = (name.bytes()).fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        });
+        Self(Self(hash ^ seed).next_u64())
+    }
+
     /// 64 random bits.
     pub fn next_u64(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);

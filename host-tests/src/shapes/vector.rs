@@ -103,7 +103,7 @@ pub(crate) fn rounded(corners: &[V], round: f64, is_closed: bool) -> Vec<V> {
                 along(scale(after, 0.45), 0.55, corner),
                 after,
             ],
-            6,
+            12,
         ));
     }
     if is_closed {

@@ -1,6 +1,7 @@
 //! What hangs above a stove.
 
-use super::super::builder::{Builder, ellipse, rectangle};
+use super::super::builder::Builder;
+use super::super::sections::{ellipse, rectangle};
 use super::super::vector::{X, Y, Z, arc, bezier, scale, turn};
 use super::{HangObject, Random};
 

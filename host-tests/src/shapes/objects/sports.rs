@@ -1,6 +1,7 @@
 //! Racquets.
 
-use super::super::builder::{Builder, circle, ellipse};
+use super::super::builder::Builder;
+use super::super::sections::{circle, ellipse};
 use super::super::vector::{Y, Z, arc, scale};
 use super::{HangObject, Random};
 
@@ -19,8 +20,9 @@ pub(super) fn racquet(random: &mut Random) -> HangObject {
     // Strings end in the hoop's middle.
     let gut = if is_tennis { 0.0009 } else { 0.0006 };
     let spacing = random.range(0.017, 0.024);
-    let chord =
-        |across: f64, whole: f64, other: f64| other * (1.0 - (across / whole).powi(2)).max(0.0).sqrt();
+    let chord = |across: f64, whole: f64, other: f64| {
+        other * (1.0 - across * across / (whole * whole)).max(0.0).sqrt()
+    };
     for (whole, other, lift, is_along) in [(b, a, -0.5 * gut, true), (a, b, 0.5 * gut, false)] {
         let count = (0.93 * whole / spacing) as i32;
         for i in -count..=count {

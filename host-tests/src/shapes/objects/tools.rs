@@ -1,6 +1,7 @@
 //! Tools and things on walls.
 
-use super::super::builder::{Builder, ellipse};
+use super::super::builder::Builder;
+use super::super::sections::ellipse;
 use super::super::vector::{V, X, Y, Z, along, arc, scale, turn};
 use super::{HangObject, Random};
 
@@ -106,7 +107,7 @@ pub(super) fn lantern(random: &mut Random) -> HangObject {
     path.extend(arc([0.0, 0.0, top + 0.02], scale(Y, half), scale(Z, rise), [0.0, 180.0], 22));
     path.push([0.0, -half, top - 0.002]);
     builder.tube(&path, wire);
-    HangObject::new(&builder).hole([0.0, 0.0, top + 0.02 + 0.6 * rise], X)
+    HangObject::new(&builder).hole_through([0.0, 0.0, top + 0.02 + 0.6 * rise], X, radius)
 }
 
 /// A picture in a frame, with a wire loop above it.

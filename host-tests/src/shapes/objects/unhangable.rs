@@ -1,6 +1,7 @@
 //! Things without anything to hang by.
 
-use super::super::builder::{Builder, circle};
+use super::super::builder::Builder;
+use super::super::sections::circle;
 use super::super::vector::{X, Z, arc, scale, turn};
 use super::{HangObject, Random};
 

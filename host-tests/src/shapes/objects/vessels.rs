@@ -1,6 +1,7 @@
 //! Vessels with handles.
 
-use super::super::builder::{Builder, ellipse, rectangle};
+use super::super::builder::Builder;
+use super::super::sections::{ellipse, rectangle};
 use super::super::vector::{V, X, Y, Z, arc, bezier, scale};
 use super::{HangObject, OpeningKind, Random};
 
@@ -75,7 +76,7 @@ pub(super) fn bucket(random: &mut Random) -> HangObject {
         builder.tube(&[[0.0, side * (rim + 0.004), ear], [0.0, side * (rim - 0.002), ear]], 1.8 * radius);
     }
     let inside = bail(&mut builder, rim + 0.004, ear, rim * random.range(0.95, 1.2), radius);
-    HangObject::new(&builder).hole(inside, X)
+    HangObject::new(&builder).hole_through(inside, X, rim)
 }
 
 /// A round or square basket with a handle overhead.
@@ -99,7 +100,7 @@ pub(super) fn basket(random: &mut Random) -> HangObject {
     path.extend(arc([0.0, 0.0, height], scale(Y, half), scale(Z, rise), [0.0, 180.0], 24));
     path.push([0.0, -half, 0.6 * height]);
     builder.sweep(&path, X, &rectangle(broad, thick));
-    HangObject::new(&builder).hole([0.0, 0.0, height + 0.6 * rise], X)
+    HangObject::new(&builder).hole_through([0.0, 0.0, height + 0.6 * rise], X, half)
 }
 
 pub(super) fn watering_can(random: &mut Random) -> HangObject {
@@ -121,7 +122,7 @@ pub(super) fn watering_can(random: &mut Random) -> HangObject {
     let grip = random.range(0.004, 0.007);
     let back = 0.92 * radius;
     let above = height + random.range(0.03, 0.06);
-    let far = back + random.range(0.04, 0.06);
+    let far = back + random.range(0.06, 0.1);
     let front = [0.5 * radius, 0.0, height - 0.003];
     let handle = bezier(
         [front, [0.0, 0.0, above + 0.05], [-far - 0.05, 0.0, above + 0.02], [-back, 0.0, 0.3 * height]],
@@ -130,5 +131,9 @@ pub(super) fn watering_can(random: &mut Random) -> HangObject {
     builder.sweep(&handle, Y, &ellipse(1.3 * grip, grip));
     // What carries the handle's front end.
     builder.cuboid([0.4 * radius, -0.8 * back, height - 0.007], [0.6 * radius, 0.8 * back, height - 0.001]);
-    HangObject::new(&builder).hole([-back - 0.012, 0.0, 0.85 * height], Y)
+    HangObject::new(&builder).hole([-back - 0.02, 0.0, 0.7 * height], Y).hole_through(
+        [-0.3 * radius, 0.0, height + 0.025],
+        Y,
+        radius,
+    )
 }

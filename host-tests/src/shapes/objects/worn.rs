@@ -1,6 +1,7 @@
 //! What people wear, carry, and hang clothes on.
 
-use super::super::builder::{Builder, circle, rectangle};
+use super::super::builder::Builder;
+use super::super::sections::{circle, rectangle};
 use super::super::vector::{V, X, Y, Z, add, arc, rounded, scale, turn};
 use super::{HangObject, OpeningKind, Random};
 

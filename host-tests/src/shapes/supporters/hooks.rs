@@ -5,15 +5,8 @@ use super::super::vector::{V, X, Y, Z, add, arc, bezier, rounded, scale, turn};
 use super::super::{Bar, Random, Support};
 use super::{bar, plate};
 
-/// A hook's two bars: the ground that things rest on, and the end that points up, for hollows.
-fn ground_and_tip(ground: [V; 2], tip: [V; 2], radius: f64) -> Vec<Bar> {
-    let mut lower = bar(ground[0], ground[1], radius);
-    lower.tilt = 0.0;
-    vec![lower, bar(tip[0], tip[1], radius)]
-}
-
 /// A J before a wall: down from `top`, round a half circle of `bend`, and up to `rise` above its middle.
-fn j(builder: &mut Builder, top: V, [drop, bend, rise]: [f64; 3], radius: f64) -> Vec<Bar> {
+fn j(builder: &mut Builder, top: V, [drop, bend, rise]: [f64; 3], radius: f64) -> Bar {
     let centre = add(top, [bend, 0.0, -drop]);
     let mut path = vec![[-0.001, top[1], top[2]], top];
     path.extend(arc(centre, scale(X, bend), scale(Z, bend), [180.0, 360.0], 14));
@@ -30,12 +23,7 @@ fn j(builder: &mut Builder, top: V, [drop, bend, rise]: [f64; 3], radius: f64) -
     };
     builder.tube(&path, radius);
     let lowest = add(centre, [0.0, 0.0, -bend]);
-    let tip = add(centre, [bend, 0.0, 0.0]);
-    ground_and_tip(
-        [add(lowest, [-0.3 * bend, 0.0, 0.0]), add(lowest, [0.3 * bend, 0.0, 0.0])],
-        [tip, add(tip, [0.0, 0.0, rise])],
-        radius,
-    )
+    bar(add(lowest, [-0.3 * bend, 0.0, 0.0]), add(lowest, [0.3 * bend, 0.0, 0.0]), radius)
 }
 
 pub(super) fn j_hook(random: &mut Random) -> Support {
@@ -44,7 +32,7 @@ pub(super) fn j_hook(random: &mut Random) -> Support {
     let bend = random.range(0.015, 0.035) + radius;
     let shape = [random.range(0.03, 0.08), bend, random.range(0.01, 0.04)];
     let off = random.range(0.02, 0.03);
-    let bars = j(&mut builder, [off, 0.0, 0.0], shape, radius);
+    let bars = vec![j(&mut builder, [off, 0.0, 0.0], shape, radius)];
     let width = random.range(0.03, 0.08);
     plate(&mut builder, [0.0, 0.0], [width, random.range(0.03, 0.1)], 0.012);
     Support { solid: builder.finish(), bars }
@@ -59,8 +47,9 @@ pub(super) fn l_hook(random: &mut Random) -> Support {
     builder.tube(&path, radius);
     let width = random.range(0.03, 0.08);
     plate(&mut builder, [0.0, 0.0], [width, random.range(0.03, 0.1)], 0.012);
-    let level = [[0.0, 0.0, 0.0], [reach - round, 0.0, 0.0]];
-    let bars = ground_and_tip(level, [[reach, 0.0, round], [reach, 0.0, rise]], radius);
+    // What rests on it, and the end that points up, for hollows.
+    let ground = bar([0.0; 3], [reach - round, 0.0, 0.0], radius);
+    let bars = vec![ground, bar([reach, 0.0, round], [reach, 0.0, rise], radius)];
     Support { solid: builder.finish(), bars }
 }
 
@@ -70,18 +59,18 @@ pub(super) fn s_hook(random: &mut Random) -> Support {
     let [upper, lower] = [random.range(0.014, 0.022), random.range(0.016, 0.032)].map(|bend| bend + radius);
     // A short rail from the wall carries the upper bend.
     let rail = upper - radius;
-    let off = random.range(0.06, 0.1);
+    let off = random.range(0.06, 0.22);
     builder.tube(&[[-0.001, 0.0, 0.0], [off + 0.06, 0.0, 0.0]], rail.min(0.012));
     let sag = upper - radius - rail.min(0.012);
     plate(&mut builder, [0.0, 0.0], [0.06, 0.08], 0.012);
-    let neck = random.range(0.01, 0.04);
+    let neck = random.range(0.03, 0.07);
     let mut path: Vec<V> = arc([off, 0.0, -sag], scale(Y, upper), scale(Z, upper), [200.0, 0.0], 16);
-    let centre = [off, upper - lower, -sag - neck];
-    path.extend(arc(centre, scale(Y, lower), scale(Z, lower), [0.0, -200.0], 16));
+    let centre = [off, upper + lower, -sag - neck];
+    path.extend(arc(centre, scale(Y, lower), scale(Z, lower), [180.0, 380.0], 16));
     builder.tube(&path, radius);
     let lowest = add(centre, [0.0, 0.0, -lower]);
-    // Its mouth is on the far side of the neck, so that holes come from -y.
-    let mut ground = bar(add(lowest, [0.0, 0.3 * lower, 0.0]), add(lowest, [0.0, -0.3 * lower, 0.0]), radius);
+    // Its mouth looks to +y, the upper one's to -y.
+    let mut ground = bar(add(lowest, [0.0, -0.3 * lower, 0.0]), add(lowest, [0.0, 0.3 * lower, 0.0]), radius);
     ground.wall = Some((super::super::vector::single(X), off as f32));
     Support { solid: builder.finish(), bars: vec![ground] }
 }
@@ -98,15 +87,15 @@ pub(super) fn coat_hook(random: &mut Random) -> Support {
     builder.tube(&upper, radius);
     builder.ball(upper[16], 1.3 * radius);
     let bend = random.range(0.014, 0.024);
-    let mut bars = j(&mut builder, [0.0, 0.0, 0.0], [0.015, bend, random.range(0.005, 0.015)], 0.8 * radius);
+    let bend_below = [0.015, bend, random.range(0.005, 0.015)];
+    let lower = j(&mut builder, [0.0; 3], bend_below, 0.8 * radius);
     let width = random.range(0.025, 0.04);
     plate(&mut builder, [0.0, 0.01], [width, 2.0 * top + 0.04], 0.01);
     let mut ground = bar(upper[5], upper[9], radius);
     ground.pass_radius = (1.3 * radius) as f32;
     let mut tip = bar(upper[12], upper[16], radius);
     tip.pass_radius = ground.pass_radius;
-    bars.extend([ground, tip]);
-    Support { solid: builder.finish(), bars }
+    Support { solid: builder.finish(), bars: vec![lower, ground, tip] }
 }
 
 pub(super) fn double_hook(random: &mut Random) -> Support {
@@ -115,15 +104,13 @@ pub(super) fn double_hook(random: &mut Random) -> Support {
     let apart = random.range(0.04, 0.1);
     let shape = [random.range(0.02, 0.05), random.range(0.015, 0.03) + radius, random.range(0.01, 0.03)];
     let off = random.range(0.015, 0.025);
-    let mut bars = j(&mut builder, [off, -apart / 2.0, 0.0], shape, radius);
-    bars.extend(j(&mut builder, [off, apart / 2.0, 0.0], shape, radius));
-    for bar in &mut bars {
+    let bars = [-0.5, 0.5].map(|side| {
+        let mut bar = j(&mut builder, [off, side * apart, 0.0], shape, radius);
         bar.gap = (apart - 2.0 * radius) as f32;
-        // A wide gap's head would rest on the ground of both; the tips stand free.
-        bar.gap = if bar.tilt > 1.0 { 0.0 } else { bar.gap };
-    }
+        bar
+    });
     plate(&mut builder, [0.0, 0.0], [apart + 0.04, random.range(0.03, 0.06)], 0.01);
-    Support { solid: builder.finish(), bars }
+    Support { solid: builder.finish(), bars: bars.to_vec() }
 }
 
 /// A carabiner on a wall ring with its gate pushed open: the lower bend, open at one side.
@@ -132,7 +119,7 @@ pub(super) fn carabiner_hook(random: &mut Random) -> Support {
     let radius = random.range(0.003, 0.005);
     let bend = random.range(0.012, 0.02) + radius;
     let tall = random.range(0.04, 0.06);
-    let off = random.range(0.045, 0.07);
+    let off = random.range(0.045, 0.2);
     // The eye that it hangs in is a bracket through its upper bend.
     builder.tube(&[[-0.001, 0.0, 0.0], [off + 0.02, 0.0, 0.0]], 0.005);
     plate(&mut builder, [0.0, 0.0], [0.04, 0.05], 0.012);

@@ -42,7 +42,9 @@ pub(super) fn mug_tree(random: &mut Random) -> Support {
 pub(super) fn rail(random: &mut Random) -> Support {
     let mut builder = Builder::default();
     let radius = random.range(0.005, 0.0125);
-    let (half, off) = (random.range(0.15, 0.35), random.range(0.05, 0.09));
+    let half = random.range(0.15, 0.35);
+    // For towels, or for clothes.
+    let off = if random.chance(0.5) { random.range(0.05, 0.09) } else { random.range(0.22, 0.3) };
     builder.tube(&[[off, -half, 0.0], [off, half, 0.0]], radius);
     for side in [-1.0, 1.0] {
         let y = side * (half - 0.015);
@@ -101,8 +103,8 @@ pub(super) fn glass_rack(random: &mut Random) -> Support {
             let middle = [0.0, (inner + outer) / 2.0, -below - 0.0025];
             let mut bar = bar(middle, add(middle, [length, 0.0, 0.0]), width / 2.0);
             bar.gap = gap as f32;
-            // A hole cannot go around the web.
-            bar.pass_radius = (below / 2.0 + width) as f32;
+            // Nothing goes around it because of the web.
+            bar.pass_radius = f32::INFINITY;
             bars.push(bar);
         }
     }
@@ -131,7 +133,9 @@ pub(super) fn fork(random: &mut Random) -> Support {
         let mut lower = bar(path[3], path[9], radius);
         lower.gap = (apart - 2.0 * radius) as f32;
         lower.wall = Some((single(X), (path[3][0] - arm - 1.3 * radius) as f32));
-        bars.extend([lower, bar(path[11], path[14], radius)]);
+        let mut tip = bar(path[11], path[14], radius);
+        tip.gap = lower.gap;
+        bars.extend([lower, tip]);
     }
     Support { solid: builder.finish(), bars }
 }
