@@ -129,9 +129,10 @@ pub(super) fn watering_can(random: &mut Random) -> HangObject {
         20,
     );
     builder.sweep(&handle, Y, &ellipse(1.3 * grip, grip));
+    let outermost = handle.iter().min_by(|a, b| a[0].total_cmp(&b[0])).copied().unwrap_or(front);
     // What carries the handle's front end.
     builder.cuboid([0.4 * radius, -0.8 * back, height - 0.007], [0.6 * radius, 0.8 * back, height - 0.001]);
-    HangObject::new(&builder).hole([-back - 0.02, 0.0, 0.7 * height], Y).hole_through(
+    HangObject::new(&builder).hole([(outermost[0] - back) / 2.0, 0.0, outermost[2]], Y).hole_through(
         [-0.3 * radius, 0.0, height + 0.025],
         Y,
         radius,
