@@ -87,9 +87,9 @@ pub(crate) fn add_arc(
     let ring = |i: usize| {
         let angle = from + (to - from) * i as f32 / count as f32;
         let outwards = Vector3::new(angle.cos(), 0.0, angle.sin());
-        (0..12)
+        (0..8)
             .map(|j| {
-                let (sin, cos) = (-(j as f32) / 12.0 * TAU).sin_cos();
+                let (sin, cos) = (-(j as f32) / 8.0 * TAU).sin_cos();
                 Vector3::from(middle) + outwards * (radius + thickness * cos)
                     - Vector3::y() * (thickness * sin)
             })
@@ -150,6 +150,21 @@ pub(crate) fn hook() -> Solid {
     let path = [[0.0, 0.0, 0.05], at(0.0), at(45.0), at(90.0), at(135.0), at(180.0), [0.0, 0.1, 0.04]];
     for pair in path.windows(2) {
         add_capsule(&mut solid, pair[0], pair[1], PEG);
+    }
+    solid
+}
+
+/// Much like the hook, but of hulls: an arc that stands in the yz plane.
+pub(crate) fn hulls() -> Solid {
+    let mut solid = Solid::default();
+    add_arc(&mut solid, [0.0, 0.0, 0.0], 0.03, PEG, PI, TAU, 12);
+    let turn = pose([0.0, 0.07, 0.03], Vector3::z(), 90.0);
+    let place = |at: &mut Point| *at = (turn * Point3::from(*at)).coords.into();
+    solid.vertices.iter_mut().for_each(place);
+    for part in &mut solid.parts {
+        if let Part::Hull(points) = part {
+            points.iter_mut().for_each(place);
+        }
     }
     solid
 }
