@@ -87,9 +87,9 @@ pub(crate) fn add_arc(
     let ring = |i: usize| {
         let angle = from + (to - from) * i as f32 / count as f32;
         let outwards = Vector3::new(angle.cos(), 0.0, angle.sin());
-        (0..8)
+        (0..12)
             .map(|j| {
-                let (sin, cos) = (-(j as f32) / 8.0 * TAU).sin_cos();
+                let (sin, cos) = (-(j as f32) / 12.0 * TAU).sin_cos();
                 Vector3::from(middle) + outwards * (radius + thickness * cos)
                     - Vector3::y() * (thickness * sin)
             })
