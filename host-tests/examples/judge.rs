@@ -14,7 +14,12 @@ const RUNS: usize = 7;
 fn main() {
     let scenes = [
         ("mug on hook", mug(), hook(), pose([0.045, 0.07, -0.054], Vector3::y(), -90.0)),
-        ("mug on hook, swinging", mug(), hook(), pose([0.0, 0.07, -0.0575], Vector3::y(), -65.0)),
+        (
+            "mug on hook, swinging",
+            mug(),
+            hook(),
+            pose([0.0, 0.07, 0.004], Vector3::y(), 20.0) * pose([0.045, 0.0, -0.058], Vector3::y(), -90.0),
+        ),
         ("mug beside hook", mug(), hook(), pose([0.145, 0.07, -0.054], Vector3::y(), -90.0)),
         ("ring on peg", ring(0.03, 0.003), peg(), at(0.0, 0.05, -0.014)),
         ("hanger on peg", hanger(), peg(), at(0.0, 0.05, -0.004)),

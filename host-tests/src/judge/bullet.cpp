@@ -12,9 +12,12 @@
 
 namespace {
 
-// Bullet's own tolerances are absolute and meant for metres, so the world is simulated in centimetres.
+// Bullet's own tolerances are absolute and meant for metres, so the world is simulated in centimetres: in
+// metres, pendulums, depths and wedges come out wrong.
 constexpr double SCALE = 100;
 constexpr btScalar MARGIN = btScalar(0.0002 * SCALE);
+// How far a contact may shift before it is found anew. Stale ones hold on: a pendulum on a thin bar is 2.4 % fast with
+// 1 mm, and 0.7 % with this.
 constexpr btScalar BREAKING = btScalar(0.0001 * SCALE);
 constexpr btScalar LOAD = btScalar(0.01 * SCALE);  // what counts as bearing, as an acceleration: a thousandth of weight
 

@@ -22,7 +22,7 @@ impl Judge for Bullet {
     }
 
     fn world(&self, scene: &Scene) -> World {
-        let mut world = World::new(&BULLET, scene, self.time_step);
+        let mut world = World::new(BULLET, scene, self.time_step);
         for part in &scene.supporter.parts {
             world.add_part(part, None);
         }

@@ -23,7 +23,7 @@ impl Judge for Ode {
     }
 
     fn world(&self, scene: &Scene) -> World {
-        let mut world = World::new(&ODE, scene, self.time_step);
+        let mut world = World::new(ODE, scene, self.time_step);
         world.add_mesh(scene.object, Some(&scene.mass.frame.inverse()));
         // One hull and the whole supporter is its triangles: they are what the hulls stand for.
         if scene.supporter.parts.iter().any(|part| matches!(part, Part::Hull(_))) {

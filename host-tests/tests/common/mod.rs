@@ -154,6 +154,21 @@ pub(crate) fn hook() -> Solid {
     solid
 }
 
+/// Much like the hook, but of hulls: an arc that stands in the yz plane.
+pub(crate) fn hulls() -> Solid {
+    let mut solid = Solid::default();
+    add_arc(&mut solid, [0.0, 0.0, 0.0], 0.03, PEG, PI, TAU, 12);
+    let turn = pose([0.0, 0.07, 0.03], Vector3::z(), 90.0);
+    let place = |at: &mut Point| *at = (turn * Point3::from(*at)).coords.into();
+    solid.vertices.iter_mut().for_each(place);
+    for part in &mut solid.parts {
+        if let Part::Hull(points) = part {
+            points.iter_mut().for_each(place);
+        }
+    }
+    solid
+}
+
 /// A mug that stands on z = 0 about the z axis, with its handle towards +x: 8 cm wide, 9 cm high, 41 hulls.
 pub(crate) fn mug() -> Solid {
     let mut solid = Solid::default();
