@@ -131,7 +131,8 @@ impl<'m> Surface<'m> {
     }
 
     /// The generalised winding number: 1 inside a closed mesh and 0 outside, in between near the openings of an
-    /// open one (Barill et al. 2018). Distant parts are approximated; the error stays below about 0.02.
+    /// open one (Barill et al. 2018). Distant parts are approximated; on closed meshes of everyday objects the error
+    /// stays below 0.2, which leaves no doubt on which side of one half it is.
     pub fn winding_number(&self, point: &Point) -> f32 {
         let mut angle = 0.0;
         self.bvh.descend(|index, node| {
@@ -151,7 +152,8 @@ impl<'m> Surface<'m> {
         self.orientation * angle / (4.0 * core::f32::consts::PI)
     }
 
-    /// Whether `point` is inside: a winding number of more than one half.
+    /// Whether `point` is inside: a winding number of more than one half, and not outside the box, where open meshes may
+    /// have that too.
     pub fn is_inside(&self, point: &Point) -> bool {
         self.aabb().contains(point) && self.winding_number(point) > 0.5
     }

@@ -132,8 +132,11 @@ fn draw(mesh: &Mesh, seed: u64, candidates: &mut [Candidate]) -> f32 {
     let normal_of = |t: u32| crate::geometry::scaled_normal(&mesh.corners(t as usize));
     let total: f64 = mesh.solid_triangles().map(|t| f64::from(normal_of(t).norm()) / 2.0).sum();
     let mut random = Random::new(seed);
-    // One candidate in each of as many equal shares of the area, so that no part is left out by chance.
+    // One candidate in each of as many equal shares of the area, so that no part is left out by chance, at a random
+    // place of the share, so that it makes no pattern with the order of the triangles.
     let share = total / candidates.len() as f64;
+    let place = |drawn: usize, random: &mut Random| (drawn as f64 + f64::from(random.next_f32())) * share;
+    let mut next = place(0, &mut random);
     let (mut covered, mut drawn) = (0.0, 0);
     let mut triangles = mesh.solid_triangles().peekable();
     while let Some(triangle) = triangles.next() {
@@ -141,11 +144,12 @@ fn draw(mesh: &Mesh, seed: u64, candidates: &mut [Candidate]) -> f32 {
         covered += f64::from(normal.norm()) / 2.0;
         let [a, b, c] = mesh.corners(triangle as usize);
         let is_last = triangles.peek().is_none();
-        while drawn < candidates.len() && (is_last || (drawn as f64 + 0.5) * share < covered) {
+        while drawn < candidates.len() && (is_last || next < covered) {
             let (s, t) = (libm::sqrtf(random.next_f32()), random.next_f32());
             let position = a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t);
             candidates[drawn] = Candidate { position: position.into(), triangle };
             drawn += 1;
+            next = place(drawn, &mut random);
         }
     }
     total as f32
@@ -367,5 +371,16 @@ mod tests {
         let (points, _) = samples_of(&shape.mesh(), 1000, 2);
         let small = points.iter().filter(|p| p.x > 50.0).count();
         assert!((180..=220).contains(&small), "{small}");
+    }
+
+    #[test]
+    fn rows_of_small_triangles_get_their_share() {
+        // Two squares of the same area. One has 17 triangles for each candidate in rows of 100, so that every 17th
+        // triangle would be below the one of the row before.
+        let mut shape = test_shapes::grid(1.0, 50);
+        shape.append(&test_shapes::grid(1.0, 1), Vector::new(100.0, 0.0, 0.0));
+        let (points, _) = samples_of(&shape.mesh(), 200, 2);
+        let fine = points.iter().filter(|p| p.x < 50.0).count();
+        assert!((90..=110).contains(&fine), "{fine}");
     }
 }

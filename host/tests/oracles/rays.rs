@@ -1,0 +1,153 @@
+//! Rays.
+//!
+//! A hit need not be parry's to be right: where a ray passes by an edge, one rounding decides. So it is asked of
+//! every hit that it is on the mesh, and of every ray that nothing in front of its hit was missed which the ray meets
+//! by more than a rounding. At an angle to the surface, roundings move the hit farther along the ray: by one over the
+//! cosine of that angle. From inside a closed mesh, edge or not, every ray must hit.
+
+use crate::random::Random;
+use crate::shapes::{self, Shape};
+use crate::truth::Truth;
+use hangpose_core::geometry::{Point, Surface, Vector};
+use nalgebra::{Point3, Vector3};
+
+/// How far off the mesh a hit may be, and how far behind the truth at right angles, in roundings; 1.5 and 1.3 were
+/// found. A dozen operations round on the way, seldom in the same direction.
+const BOUND: f64 = 4.0;
+
+/// The largest errors, in roundings.
+#[derive(Debug, Default)]
+pub(crate) struct Worst {
+    off: f64,
+    behind: f64,
+    rays: usize,
+    hits: usize,
+}
+
+/// Rays on one mesh.
+struct Check<'a> {
+    name: &'a str,
+    surface: &'a Surface<'a>,
+    truth: &'a Truth,
+    worst: Worst,
+}
+
+impl Check<'_> {
+    /// Checks the ray from `origin` through `target`.
+    fn aim(&mut self, origin: Point3<f64>, target: Point3<f64>) {
+        self.cast(origin.cast(), (target - origin).normalize().cast(), 0.0);
+    }
+
+    /// Checks a ray and returns whether it hits; what parry finds closer than `skip` need not be hit.
+    fn cast(&mut self, origin: Point, direction: Vector, skip: f64) -> bool {
+        let ours = self.surface.closest_hit(&origin, &direction);
+        let any = self.surface.any_hit(&origin, &direction);
+        assert_eq!(any, ours.is_some(), "{}: {origin} {direction}", self.name);
+        // The oracle starts from the same rounded numbers.
+        let (start, along) = (origin.cast::<f64>(), direction.cast::<f64>());
+        let rounding = self.truth.rounding_of_distances(&start);
+        self.worst.rays += 1;
+        if let Some(at) = ours {
+            let off = self.truth.distance(&(start + along * f64::from(at))) / rounding;
+            self.worst.off = self.worst.off.max(off);
+            self.worst.hits += 1;
+            assert!(off < BOUND, "{}: {origin} {direction} hits nothing: {off}", self.name);
+        }
+        if let Some(hit) = self.truth.first_hit(&start, &along, skip)
+            && hit.from_border > BOUND * rounding
+        {
+            let behind = (ours.map_or(f64::INFINITY, f64::from) - hit.at) * hit.cosine / rounding;
+            self.worst.behind = self.worst.behind.max(behind);
+            assert!(
+                behind < BOUND,
+                "{}: {origin} {direction} missed: {behind} at {} cos {} border {}",
+                self.name,
+                hit.at,
+                hit.cosine,
+                hit.from_border
+            );
+        }
+        any
+    }
+
+    /// `count` rays of each kind that any mesh must stand.
+    fn any_mesh(&mut self, random: &mut Random, count: usize) {
+        let (middle, size) = (nalgebra::center(&self.truth.low, &self.truth.high), self.truth.size());
+        for _ in 0..count {
+            let corners = self.truth.corners[random.below(self.truth.corners.len())];
+            let on_mesh = random.on_triangle(corners);
+            let around = middle + random.in_cube() * size;
+            let close = middle + random.in_cube().component_mul(&(self.truth.high - self.truth.low)) * 0.5;
+            // Anywhere, at the mesh, and exactly at a vertex or the middle of an edge.
+            self.cast(around.cast(), random.direction().cast(), 0.0);
+            for origin in [around, close] {
+                self.aim(origin, on_mesh);
+                self.aim(origin, corners[0]);
+                self.aim(origin, nalgebra::center(&corners[0], &corners[1]));
+            }
+            // Along an axis, through a vertex; in the plane of faces where they are square to the axes.
+            let axis = Vector::ith(random.below(3), if random.unit() < 0.5 { 1.0 } else { -1.0 });
+            let distance = random.unit() * size;
+            self.cast(corners[0].cast() - axis * distance as f32, axis, 0.0);
+            // From the mesh, up to rounding.
+            let skip = 4.0 * BOUND * self.truth.rounding(&on_mesh);
+            self.cast(on_mesh.cast(), random.direction().cast(), skip);
+            self.cast(corners[0].cast(), random.direction().cast(), skip);
+        }
+    }
+
+    /// `count` rays of each kind from the inside of a closed mesh, which must all hit.
+    fn closed_mesh(&mut self, random: &mut Random, count: usize) {
+        let (middle, extents) =
+            (nalgebra::center(&self.truth.low, &self.truth.high), self.truth.high - self.truth.low);
+        let mut left = count;
+        while left > 0 {
+            let origin: Point = (middle + random.in_cube().component_mul(&extents) * 0.5).cast();
+            let exact = origin.cast();
+            // Not so close to the mesh that a rounding takes it outside.
+            if self.truth.is_inside(&exact) != Some(true)
+                || self.truth.distance(&exact) < 4.0 * BOUND * self.truth.rounding(&exact)
+            {
+                continue;
+            }
+            left -= 1;
+            let corners = self.truth.corners[random.below(self.truth.corners.len())];
+            let mut rays = vec![
+                random.direction(),
+                corners[0] - exact,
+                nalgebra::center(&corners[0], &corners[1]) - exact,
+            ];
+            rays.extend((0..3).flat_map(|axis| [Vector3::ith(axis, 1.0), Vector3::ith(axis, -1.0)]));
+            for direction in rays {
+                let hits = self.cast(origin, direction.normalize().cast(), 0.0);
+                assert!(hits, "{}: leaks from {origin} along {direction}", self.name);
+            }
+        }
+    }
+}
+
+/// Checks `count` rays of each kind.
+pub(crate) fn check(
+    shape: &Shape,
+    surface: &Surface,
+    truth: &Truth,
+    random: &mut Random,
+    count: usize,
+) -> Worst {
+    let mut check = Check { name: &shape.name, surface, truth, worst: Worst::default() };
+    check.any_mesh(random, count);
+    if shape.is_closed {
+        check.closed_mesh(random, count);
+    }
+    check.worst
+}
+
+#[test]
+fn rays_hit_what_parry_hits() {
+    let mut random = Random(2);
+    for shape in shapes::all_places() {
+        let truth = Truth::of(&shape);
+        let worst = shape.with_surface(|surface| check(&shape, surface, &truth, &mut random, 120));
+        eprintln!("{}: {worst:?}", shape.name);
+    }
+}
