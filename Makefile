@@ -1,11 +1,12 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench peer samples clean
+.PHONY: help setup demo test bench tables peer samples clean
 
 help:
-	@echo "make demo     hang the sample mug on the sample hook"
+	@echo "make demo     hang the sample mug on the sample hook, let go and draw it"
 	@echo "make test     everything that must hold"
 	@echo "make bench    how long it takes, in how much memory"
 	@echo "make peer     the same beside another implementation: PEER=peer.py [MESHES=folder]"
+	@echo "make tables   drop 600 pairs in two engines: docs/RESULTS.md [MESHES=folder adds real ones]"
 	@echo "make samples  write samples/ anew"
 	@echo "make setup    install what is missing"
 	@echo "make clean    remove what was built"
@@ -16,7 +17,8 @@ setup:
 demo: setup
 	@mkdir -p build
 	cargo run --release -p hangpose -- predict --object samples/mug.obj --supporter samples/hook.ply --json build/demo.json
-	@echo "the poses are in build/demo.json"
+	@echo "the poses are in build/demo.json; this is what becomes of them in Bullet:"
+	cargo run --release -p host-tests --bin drop -- --object samples/mug.obj --supporter samples/hook.obj --poses build/demo.json --picture build/demo.png
 
 test: setup
 	cargo fmt --all --check
@@ -28,6 +30,9 @@ test: setup
 
 bench: setup
 	cargo bench --workspace
+
+tables: setup
+	cargo run --release -p host-tests --bin tables -- $(if $(MESHES),--meshes $(MESHES) --real-pairs 160)
 
 peer_python = build/peer/bin/python
 

@@ -4,6 +4,7 @@ use crate::solid::Solid;
 use hangpose::geometry::Pose;
 use hangpose::parry::pose_to_parry;
 use image::{Rgb, RgbImage};
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math;
 use parry3d::query::{Ray, RayCast};
 use parry3d::shape::TriMesh;
@@ -13,11 +14,13 @@ use std::path::Path;
 const SIDE: u32 = 320;
 /// Where the eye is, seen from the supporter: in front of the wall, to the side and above.
 const EYE: [f32; 3] = [0.75, -0.55, 0.37];
+/// How far away the eye is, metres: farther than anything reaches.
+const FAR: f32 = 10.0;
 const BACKGROUND: Rgb<u8> = Rgb([255, 255, 255]);
 const OBJECT: [f32; 3] = [0.85, 0.45, 0.20];
 const SUPPORTER: [f32; 3] = [0.45, 0.50, 0.60];
 
-/// Writes a PNG with the object at `release` on the left and at `rest` on the right.
+/// Writes a PNG with the object at `release` on the left and at `rest` on the right, both seen from the same place.
 pub fn write(
     path: &Path,
     object: &Solid,
@@ -26,9 +29,10 @@ pub fn write(
     rest: &Pose,
 ) -> image::ImageResult<()> {
     let [object, supporter] = [object, supporter].map(mesh_of);
+    let seen = supporter.local_aabb().merged(&object.aabb(&pose_to_parry(release)));
     let mut picture = RgbImage::from_pixel(2 * SIDE, SIDE, BACKGROUND);
     for (column, pose) in [(0, release), (SIDE, rest)] {
-        draw(&mut picture, column, &object, &supporter, &pose_to_parry(pose));
+        draw(&mut picture, column, &seen, &object, &supporter, &pose_to_parry(pose));
     }
     picture.save(path)
 }
@@ -38,22 +42,26 @@ fn mesh_of(solid: &Solid) -> TriMesh {
     TriMesh::new(vertices, solid.triangles.clone()).expect("a shape has triangles")
 }
 
-/// Draws what one sees from far away into the square that begins at `column`.
-fn draw(picture: &mut RgbImage, column: u32, object: &TriMesh, supporter: &TriMesh, pose: &math::Pose) {
+/// Draws what one sees of `seen` from far away into the square that begins at `column`.
+fn draw(
+    picture: &mut RgbImage,
+    column: u32,
+    seen: &Aabb,
+    object: &TriMesh,
+    supporter: &TriMesh,
+    pose: &math::Pose,
+) {
     let identity = math::Pose::IDENTITY;
     let back = math::Vector::from_array(EYE).normalize();
     let right = math::Vector::Z.cross(back).normalize();
     let up = back.cross(right);
-    let aabb = supporter.aabb(&identity);
-    let (centre, reach) =
-        (aabb.center(), 0.5 * aabb.extents().length() + object.local_aabb().extents().length());
-    let reach = reach.min(0.6);
+    let (centre, reach) = (seen.center(), 0.5 * seen.extents().length());
     for y in 0..SIDE {
         for x in 0..SIDE {
             let [u, v] = [x, y].map(|k| (2.0 * (k as f32 + 0.5) / SIDE as f32 - 1.0) * reach);
-            let ray = Ray::new(centre + right * u - up * v + back * 3.0, -back);
+            let ray = Ray::new(centre + right * u - up * v + back * FAR, -back);
             let hit = |mesh: &TriMesh, pose: &math::Pose, colour: [f32; 3]| {
-                let hit = mesh.cast_ray_and_get_normal(pose, &ray, 6.0, false)?;
+                let hit = mesh.cast_ray_and_get_normal(pose, &ray, 2.0 * FAR, false)?;
                 Some((hit.time_of_impact, hit.normal.dot(back).abs(), colour))
             };
             let hits = [hit(object, pose, OBJECT), hit(supporter, &identity, SUPPORTER)];

@@ -57,7 +57,7 @@ pub fn tables(title: &str, rows: &[Row]) -> String {
                 "Seconds per prediction, one core, median: {median:.3}; slowest: {slowest:.3}.\n"
             );
         }
-        let drops = rows.iter().flat_map(|row| &row.outcomes).map(|outcome| outcome.seconds);
+        let drops = rows.iter().flat_map(|row| &row.outcomes).filter(|o| o.clear).map(|o| o.seconds);
         if let Some([median, slowest]) = median_and_slowest(drops) {
             let _ = writeln!(
                 text,

@@ -43,11 +43,25 @@ pub struct Outcome {
     pub sank: f32,
     /// How far the object turned, radians.
     pub turned: f32,
-    /// How long the judge took, seconds.
+    /// How long the judge took, seconds; 0 if the pose was not let go.
     pub seconds: f64,
 }
 
 impl Outcome {
+    /// Of a pose that is not clear and was not let go.
+    pub fn unclear(penetration: f64) -> Self {
+        Self {
+            clear: false,
+            holds: false,
+            honest: false,
+            robust: false,
+            penetration: penetration as f32,
+            sank: 0.0,
+            turned: 0.0,
+            seconds: 0.0,
+        }
+    }
+
     /// Of a verdict that took so many seconds.
     pub fn new(verdict: &Verdict, seconds: f64) -> Self {
         let Verdict { clear, holds, honest, robust, ref figures } = *verdict;

@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::row::{Failure, Outcome, Row};
 use crate::gallery;
-use crate::judge::{Bullet, Judge, Ode, Scene};
+use crate::judge::{Bullet, Judge, Limits, Ode, Scene};
 use hangpose::geometry::Mesh;
 use hangpose::hanging::{HangingPose, predict};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, sample_supporter};
@@ -124,6 +124,13 @@ fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row 
     let scene = Scene::new(&case.object, &case.supporter);
     let drop = |judge: &dyn Judge, pose: &HangingPose| {
         let start = Instant::now();
+        // What runs through the supporter has failed, and is slow to shake free.
+        let mut world = judge.world(&scene);
+        world.release(&pose.pose.cast());
+        let penetration = world.penetration();
+        if penetration > Limits::DEFINITION.penetration {
+            return (Outcome::unclear(penetration), pose.pose);
+        }
         let verdict = judge.judge(&scene, &pose.pose);
         (Outcome::new(&verdict, start.elapsed().as_secs_f64()), verdict.figures.rest)
     };

@@ -1,6 +1,6 @@
 //! Writes the shapes of `samples/`, byte for byte the same on every machine; with `--check` only compares.
 //!
-//! Objects are meshes in metres with z up, supporters the point clouds that a depth camera would give of theirs.
+//! All are meshes in metres with z up; of the supporters also the point clouds that a depth camera would give.
 
 mod shapes;
 
@@ -207,7 +207,9 @@ fn main() -> ExitCode {
     let files = [
         ("mug.obj", obj(&mug())),
         ("scissors.obj", obj(&scissors())),
+        ("hook.obj", obj(&hook())),
         ("hook.ply", cloud(&hook(), 1)),
+        ("mug_tree.obj", obj(&mug_tree())),
         ("mug_tree.ply", cloud(&mug_tree(), 2)),
     ];
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples");
