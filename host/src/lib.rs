@@ -25,3 +25,8 @@ pub mod parry;
 
 pub use analyze::{LIMITS, TooLarge, analyze_object, analyze_supporter, sample_supporter};
 pub use hangpose_core::*;
+
+/// The README's Rust must compile.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
