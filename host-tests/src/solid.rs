@@ -40,19 +40,26 @@ pub enum Part {
 
 /// Voxels along the longest side of a mesh that is taken apart, and how hollow a part may be, as a fraction of it.
 const RESOLUTION: u32 = 80;
-const CONCAVITY: f32 = 0.002;
+const CONCAVITY: f32 = 0.005;
 
 impl Solid {
-    /// A mesh of unknown make, taken apart into parts that are about convex.
-    pub fn take_apart(vertices: Vec<[f32; 3]>, triangles: Vec<[u32; 3]>) -> Self {
+    /// A mesh of unknown make, taken apart into parts that are about convex; and what these parts fill, whose surface
+    /// is closed even if the mesh's is not.
+    pub fn take_apart(vertices: Vec<[f32; 3]>, triangles: Vec<[u32; 3]>) -> (Self, Self) {
         let points: Vec<_> = vertices.iter().map(|&v| v.into()).collect();
         let parameters =
             VHACDParameters { resolution: RESOLUTION, concavity: CONCAVITY, ..VHACDParameters::default() };
-        let parts = VHACD::decompose(&parameters, &points, &triangles, true)
-            .compute_exact_convex_hulls(&points, &triangles)
-            .into_iter()
-            .map(|(corners, _)| Part::Hull(corners.into_iter().map(Into::into).collect()))
-            .collect();
-        Self { vertices, triangles, parts }
+        let hulls = VHACD::decompose(&parameters, &points, &triangles, true)
+            .compute_exact_convex_hulls(&points, &triangles);
+        let (mut parts, mut filled) = (Vec::new(), Self::default());
+        for (corners, faces) in hulls {
+            let corners: Vec<[f32; 3]> = corners.into_iter().map(Into::into).collect();
+            let first = filled.vertices.len() as u32;
+            filled.vertices.extend(&corners);
+            filled.triangles.extend(faces.iter().map(|face| face.map(|corner| corner + first)));
+            parts.push(Part::Hull(corners));
+        }
+        filled.parts.clone_from(&parts);
+        (Self { vertices, triangles, parts }, filled)
     }
 }

@@ -51,10 +51,19 @@ impl<'a> Scene<'a> {
     ///
     /// If the object's surface encloses no volume.
     pub fn new(object: &'a Solid, supporter: &'a Solid) -> Self {
+        Self::filled(object, supporter, object)
+    }
+
+    /// The same for an object whose surface need not enclose what it is made of: that is what `filling` encloses.
+    ///
+    /// # Panics
+    ///
+    /// If the surface of the filling encloses no volume.
+    pub fn filled(object: &'a Solid, supporter: &'a Solid, filling: &Solid) -> Self {
         Self {
             object,
             supporter,
-            mass: Mass::of(object, 0.2),
+            mass: Mass::of(filling, 0.2),
             friction: FRICTION,
             damping: DAMPING,
             tilt: true,

@@ -19,6 +19,8 @@ pub struct Case {
     pub fits: bool,
     /// The object.
     pub object: Arc<Solid>,
+    /// What the object's mass fills.
+    pub filling: Arc<Solid>,
     /// The supporter.
     pub supporter: Arc<Solid>,
 }
@@ -61,13 +63,18 @@ fn made_case(object: &ObjectKind, supporter: usize, seed: u64, draw: u64, should
     let supporter = &SUPPORTERS[supporter % SUPPORTERS.len()];
     let sizes = seed << 32 | draw;
     let made = (object.make(2 * sizes), supporter.make(2 * sizes + 1));
-    (fits(&made.0, &made.1) == should_fit).then(|| Case {
+    if fits(&made.0, &made.1) != should_fit {
+        return None;
+    }
+    let shape = Arc::new(made.0.solid);
+    Some(Case {
         name: format!("{}-{}-{seed}-{draw}", object.name, supporter.name),
         seed: draw,
         object_kind: object.name.into(),
         supporter_kind: supporter.name.into(),
         fits: should_fit,
-        object: Arc::new(made.0.solid),
+        filling: shape.clone(),
+        object: shape,
         supporter: Arc::new(made.1.solid),
     })
 }

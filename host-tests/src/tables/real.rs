@@ -19,16 +19,24 @@ struct Entry {
     up_axis: String,
 }
 
+/// A mesh that was read and taken apart.
+struct Loaded {
+    name: String,
+    category: String,
+    solid: Arc<Solid>,
+    filling: Arc<Solid>,
+}
+
 /// Every object on every supporter, at most `pairs` that may hang, evenly over the list, and those that cannot.
 pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
     let path = folder.join("manifest.json");
     let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
     let entries: Vec<Entry> = serde_json::from_str(&text).with_context(|| path.display().to_string())?;
     let of = |start: &str| entries.iter().filter(|e| e.file.starts_with(start)).collect::<Vec<_>>();
-    let load = |entries: Vec<&Entry>| -> Result<Vec<(String, String, Arc<Solid>)>> {
+    let load = |entries: Vec<&Entry>| -> Result<Vec<Loaded>> {
         let mut solids = Vec::new();
         for entry in entries {
-            solids.push((entry.name.clone(), entry.category.clone(), Arc::new(solid(folder, entry)?)));
+            solids.push(solid(folder, entry)?);
         }
         Ok(solids)
     };
@@ -44,13 +52,14 @@ pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
         cases.extend((0..count).map(|k| {
             let (object, supporter) = all[k * all.len() / count];
             Case {
-                name: format!("{}-{}", object.0, supporter.0),
+                name: format!("{}-{}", object.name, supporter.name),
                 seed: k as u64,
-                object_kind: object.1.clone(),
-                supporter_kind: supporter.0.clone(),
+                object_kind: object.category.clone(),
+                supporter_kind: supporter.name.clone(),
                 fits,
-                object: object.2.clone(),
-                supporter: supporter.2.clone(),
+                object: object.solid.clone(),
+                filling: object.filling.clone(),
+                supporter: supporter.solid.clone(),
             }
         }));
     }
@@ -58,7 +67,7 @@ pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
 }
 
 /// The mesh in metres with z up, taken apart into convex parts.
-fn solid(folder: &Path, entry: &Entry) -> Result<Solid> {
+fn solid(folder: &Path, entry: &Entry) -> Result<Loaded> {
     let mesh = read_mesh(&folder.join(&entry.file))?;
     let turn = |[x, y, z]: [f32; 3]| match entry.up_axis.as_str() {
         "+y" => [x, -z, y],
@@ -69,5 +78,7 @@ fn solid(folder: &Path, entry: &Entry) -> Result<Solid> {
         _ => [x, y, z],
     };
     let vertices = mesh.vertices.iter().map(|v| turn(v.map(|x| x * entry.scale_to_m))).collect();
-    Ok(Solid::take_apart(vertices, mesh.triangles))
+    let (solid, filling) = Solid::take_apart(vertices, mesh.triangles);
+    let (name, category) = (entry.name.clone(), entry.category.clone());
+    Ok(Loaded { name, category, solid: solid.into(), filling: filling.into() })
 }

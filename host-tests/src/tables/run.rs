@@ -121,7 +121,7 @@ fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row 
 
     // A pair that cannot hang is judged by whether anything is predicted at all.
     let poses = if case.fits { prediction.poses } else { &[] };
-    let scene = Scene::new(&case.object, &case.supporter);
+    let scene = Scene::filled(&case.object, &case.supporter, &case.filling);
     let drop = |judge: &dyn Judge, pose: &HangingPose| {
         let start = Instant::now();
         // What runs through the supporter has failed, and is slow to shake free.
