@@ -57,9 +57,30 @@ impl Solid {
             let first = filled.vertices.len() as u32;
             filled.vertices.extend(&corners);
             filled.triangles.extend(faces.iter().map(|face| face.map(|corner| corner + first)));
-            parts.push(Part::Hull(corners));
+            parts.push(Part::Hull(outermost(&corners)));
         }
         filled.parts.clone_from(&parts);
         (Self { vertices, triangles, parts }, filled)
     }
+}
+
+/// Directions in which a part that was cut out of a mesh keeps its outermost corner. The engines' time goes with the
+/// corners, and exact hulls of scans have hundreds.
+const DIRECTIONS: u32 = 48;
+
+fn outermost(corners: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    let golden_angle = std::f32::consts::PI * (3.0 - 5_f32.sqrt());
+    let mut kept: Vec<usize> = (0..DIRECTIONS)
+        .filter_map(|k| {
+            let z = 1.0 - (2 * k + 1) as f32 / DIRECTIONS as f32;
+            let (sin, cos) = libm::sincosf(golden_angle * k as f32);
+            let across = (1.0 - z * z).sqrt();
+            let along =
+                |corner: &[f32; 3]| corner[0] * across * cos + corner[1] * across * sin + corner[2] * z;
+            (0..corners.len()).max_by(|&a, &b| along(&corners[a]).total_cmp(&along(&corners[b])))
+        })
+        .collect();
+    kept.sort_unstable();
+    kept.dedup();
+    kept.into_iter().map(|index| corners[index]).collect()
 }
