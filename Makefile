@@ -32,7 +32,7 @@ bench: setup
 	cargo bench --workspace
 
 tables: setup
-	cargo run --release -p host-tests --bin tables -- $(if $(MESHES),--meshes $(MESHES) --real-pairs 160)
+	cargo run --release -p host-tests --bin tables -- $(if $(MESHES),--meshes $(MESHES) --real-pairs 150)
 
 peer_python = build/peer/bin/python
 

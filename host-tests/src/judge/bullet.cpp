@@ -106,6 +106,7 @@ void destroy(void* world) { delete static_cast<World*>(world); }
 
 // The margin rounds a hull off outwards, so the hull is made smaller by as much first.
 void add_hull(void* world, bool body, const double* points, size_t count) {
+    if (count == 0) return;
     std::vector<btVector3> all;
     btVector3 middle(0, 0, 0);
     for (size_t i = 0; i < count; ++i) all.push_back(scaled(points + 3 * i));
@@ -116,6 +117,9 @@ void add_hull(void* world, bool body, const double* points, size_t count) {
     if (shrunk < 0 || hull.vertices.size() == 0) hull.compute(all[0].m_floats, sizeof(btVector3), int(count), 0, 0);
     auto shape = std::make_unique<btConvexHullShape>();
     for (int i = 0; i < hull.vertices.size(); ++i) shape->addPoint(hull.vertices[i], false);
+    // A flat set has no hull for Bullet, and a shape without points crashes it.
+    if (hull.vertices.size() == 0)
+        for (const btVector3& point : all) shape->addPoint(point, false);
     shape->recalcLocalAabb();
     shape->setMargin(std::max(shrunk, btScalar(0)));
     of(world).add(body, std::move(shape), btTransform(btQuaternion::getIdentity(), middle));
