@@ -82,8 +82,8 @@ struct Hits {
 }
 
 impl Hangability<'_> {
-    /// Fills `slots` with the sites, the best encircled first, and returns how many they are. When the work
-    /// limit is reached, what was found until then is returned, and `Some` of why it is not all.
+    /// Fills `slots` with the sites, the best encircled first, and returns what was left after each step. When the
+    /// work limit is reached, what was found until then is there, and `Some` says why it is not all.
     pub(super) fn find(
         &self,
         slots: &mut [HangingSite],

@@ -56,8 +56,8 @@ pub(super) struct Supportability<'a> {
 }
 
 impl Supportability<'_> {
-    /// Fills `slots` with the sites, the thinnest first, and returns how many they are. When the work limit is
-    /// reached, what was found until then is returned, and `Some` of why it is not all.
+    /// Fills `slots` with the sites, the thinnest first, and returns what was left after each step. When the work
+    /// limit is reached, what was found until then is there, and `Some` says why it is not all.
     pub(super) fn find(
         &self,
         slots: &mut [SupportSite],
@@ -86,10 +86,7 @@ impl Supportability<'_> {
         for (done, (_, contact_point)) in clusters.iter().enumerate() {
             meter.progress(done as f32 / clusters.count as f32);
             match self.site_at(contact_point, up, slice, meter) {
-                Ok(Some(site)) => {
-                    counts.sites += 1;
-                    sites.offer(site, |a, b| a.support_radius < b.support_radius);
-                }
+                Ok(Some(site)) => sites.offer(site, |a, b| a.support_radius < b.support_radius),
                 Ok(None) => {}
                 Err(reason) => {
                     stop = Some(reason);
