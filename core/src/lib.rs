@@ -72,6 +72,7 @@
 mod best;
 pub mod geometry;
 pub mod hanging;
+pub mod mechanics;
 mod heap;
 pub mod memory;
 mod monitor;

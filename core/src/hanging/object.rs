@@ -2,17 +2,21 @@
 
 use super::AnalysisError;
 use super::hangability::{self, Hangability, HangabilityCounts, HangingSite};
-use crate::geometry::{MassProperties, Mesh, Point, PointTree, Surface, Vector};
+use crate::geometry::{DistanceField, MassProperties, Mesh, Point, PointTree, Surface, Vector};
+use crate::mechanics::Body;
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::Params;
 use crate::perception::sampling;
 
+const VOXELS: usize = 400_000;
 /// An object, analysed: shape, centre of mass and hanging sites, in object coordinates. Immutable; any number of
 /// threads may match it at once.
 #[derive(Clone, Copy)]
 pub struct Object<'m> {
     surface: Surface<'m>,
+    field: DistanceField<'m>,
+    reach: f32,
     mass: MassProperties,
     centre_of_mass: Point,
     sites: &'m [HangingSite],
@@ -25,10 +29,14 @@ impl<'m> Object<'m> {
     /// Bytes of memory for any object within `limits`.
     pub const fn bytes(limits: &Limits) -> usize {
         let model = Surface::bytes(limits.triangles)
+            .saturating_add(DistanceField::bytes(VOXELS))
             .saturating_add(array_bytes::<HangingSite>(hangability::MAX_SITES));
         let before_sampling = larger(
             MassProperties::scratch_bytes(limits.vertices, limits.triangles),
-            Surface::scratch_bytes(limits.triangles),
+            larger(
+                Surface::scratch_bytes(limits.triangles),
+                DistanceField::scratch_bytes(limits.triangles, VOXELS),
+            ),
         );
         let samples = array_bytes::<Point>(limits.samples).saturating_mul(2);
         let after_tree =
@@ -60,6 +68,7 @@ impl<'m> Object<'m> {
 
         let mass = MassProperties::of(mesh, arena.scratch())?;
         let surface = Surface::build(mesh, mass.is_inside_out, &mut arena)?;
+        let field = DistanceField::build(&surface, VOXELS, &mut arena)?;
         let sites = arena.slice::<HangingSite>(hangability::MAX_SITES)?;
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
 
@@ -81,7 +90,19 @@ impl<'m> Object<'m> {
             return Err(AnalysisError::Cancelled);
         }
         let sites = &sites[..counts.sites];
-        Ok(Self { surface, mass, centre_of_mass, sites, counts, work: meter.work, stopped })
+        let reach = points.iter().map(|p| (p - centre_of_mass).norm()).fold(0.0, f32::max);
+        Ok(Self { surface, field, reach, mass, centre_of_mass, sites, counts, work: meter.work, stopped })
+    }
+
+    /// For mechanics.
+    pub fn body(&self) -> Body<'_> {
+        Body {
+            field: &self.field,
+            centre: self.centre_of_mass,
+            inverse_inertia: self.mass.inertia.try_inverse().unwrap_or_else(nalgebra::Matrix3::identity),
+            reach: self.reach,
+            extent: self.surface.aabb().extents().max(),
+        }
     }
 
     /// The mesh, for rays and distances.

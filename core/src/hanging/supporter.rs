@@ -2,7 +2,8 @@
 
 use super::AnalysisError;
 use super::supportability::{self, SupportSite, Supportability, SupportabilityCounts};
-use crate::geometry::{Cloud, PointTree, Vector};
+use crate::geometry::{Cloud, Neighbour, PointTree, Vector};
+use crate::mechanics::Support;
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::Params;
@@ -18,6 +19,8 @@ const UNIT_LENGTH: f32 = 1e-3;
 #[derive(Clone, Copy)]
 pub struct Supporter<'m> {
     tree: PointTree<'m>,
+    point_normals: &'m [Vector],
+    disc: f32,
     sites: &'m [SupportSite],
     normals: NormalCounts,
     counts: SupportabilityCounts,
@@ -39,7 +42,7 @@ impl<'m> Supporter<'m> {
     pub const fn bytes(limits: &Limits) -> usize {
         let points = limits.points;
         let model =
-            PointTree::bytes(points).saturating_add(array_bytes::<SupportSite>(supportability::MAX_SITES));
+            PointTree::bytes(points).saturating_add(array_bytes::<SupportSite>(supportability::MAX_SITES)).saturating_add(array_bytes::<Vector>(points));
         let scratch = larger(
             PointTree::scratch_bytes(points),
             array_bytes::<Vector>(points).saturating_mul(2).saturating_add(larger(
@@ -66,8 +69,8 @@ impl<'m> Supporter<'m> {
         let tree = PointTree::build(points, &mut arena)?;
         let sites = arena.slice::<SupportSite>(supportability::MAX_SITES)?;
 
+        let in_tree_order = arena.slice::<Vector>(points.len())?;
         let mut scratch = arena.scratch();
-        let in_tree_order = scratch.slice::<Vector>(points.len())?;
         let mut normals = NormalCounts::default();
         if let Some(given) = cloud.normals() {
             for (normal, &index) in in_tree_order.iter_mut().zip(tree.order()) {
@@ -93,7 +96,13 @@ impl<'m> Supporter<'m> {
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
         }
-        Ok(Self { tree, sites: &sites[..counts.sites], normals, counts, work: meter.work, stopped })
+        let disc = 0.6 * spacing(&tree);
+        Ok(Self { tree, point_normals: in_tree_order, disc, sites: &sites[..counts.sites], normals, counts, work: meter.work, stopped })
+    }
+
+    /// For mechanics.
+    pub fn support(&self) -> Support<'_> {
+        Support { tree: &self.tree, normals: self.point_normals, disc: self.disc }
     }
 
     /// The points, for neighbour queries.
@@ -125,4 +134,18 @@ impl<'m> Supporter<'m> {
     pub fn stopped(&self) -> Option<Stop> {
         self.stopped
     }
+}
+
+/// The distance at which points have their fourth neighbour, in the median of some.
+fn spacing(tree: &PointTree) -> f32 {
+    const PROBES: usize = 64;
+    let mut distances = [0.0; PROBES];
+    let points = tree.points();
+    for (k, distance) in distances.iter_mut().enumerate() {
+        let mut found = [Neighbour::default(); 5];
+        let found = tree.k_nearest(&points[k * points.len() / PROBES], &mut found);
+        *distance = found.last().map_or(0.0, |n| libm::sqrtf(n.distance_squared));
+    }
+    distances.sort_unstable_by(f32::total_cmp);
+    distances[PROBES / 2]
 }
