@@ -165,15 +165,15 @@ impl Layout {
 
     /// Corners in voxels, from the origin of the grid.
     pub(super) fn local(&self, corners: &[Point; 3]) -> [Vector; 3] {
-        corners.map(|corner| self.to_local(&corner))
+        corners.map(|corner| self.in_voxels(&corner))
     }
 
     #[inline]
-    pub(super) fn to_local(&self, point: &Point) -> Vector {
+    pub(super) fn in_voxels(&self, point: &Point) -> Vector {
         (point - self.origin) * self.inverse
     }
 
-    pub(super) fn to_object(&self, local: &Vector) -> Point {
+    pub(super) fn in_object(&self, local: &Vector) -> Point {
         self.origin + local * self.voxel
     }
 

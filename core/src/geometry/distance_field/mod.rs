@@ -123,7 +123,7 @@ impl<'m> DistanceField<'m> {
         sign::find(surface, &layout, grid, places, &nearest, frames, nodes, far_signs, scratch.scratch())?;
         Far { layout: &layout, grid, signs: far_signs }.fill(scratch)?;
         let Aabb { min, max } = surface.aabb();
-        let aabb = Aabb { min: layout.to_local(&min).into(), max: layout.to_local(&max).into() };
+        let aabb = Aabb { min: layout.in_voxels(&min).into(), max: layout.in_voxels(&max).into() };
         Ok(Self { layout, aabb, grid, nodes })
     }
 
@@ -140,7 +140,7 @@ impl<'m> DistanceField<'m> {
 
     /// Signed distance in metres, negative inside, and its gradient, which is of unit length, or zero where there is none.
     pub fn sample(&self, point: &Point) -> (f32, Vector) {
-        let local = self.layout.to_local(point);
+        let local = self.layout.in_voxels(point);
         match self.layout.locate(&local) {
             Some(at) => self.sample_at(&local, at),
             None => self.sample_outside(&local),
@@ -149,7 +149,7 @@ impl<'m> DistanceField<'m> {
 
     /// The same distance as [`sample`](Self::sample) gives, in metres, without the gradient.
     pub fn distance(&self, point: &Point) -> f32 {
-        let local = self.layout.to_local(point);
+        let local = self.layout.in_voxels(point);
         let Some((block, cell)) = self.layout.locate(&local) else {
             return self.sample_outside(&local).0;
         };

@@ -129,7 +129,7 @@ impl Sides<'_, '_> {
 
     /// Where a node is, in object coordinates.
     fn point(&self, brick: usize, node: usize) -> Point {
-        self.layout.to_object(&self.local(brick, node))
+        self.layout.in_object(&self.local(brick, node))
     }
 
     fn local(&self, brick: usize, node: usize) -> Vector {
@@ -274,7 +274,7 @@ impl Sides<'_, '_> {
                     for place in in_grid {
                         let block = self.layout.index(place);
                         let Entry::Far(_) = Entry::unpack(self.grid[block]) else { continue };
-                        let point = self.layout.to_object(&self.layout.centre(block));
+                        let point = self.layout.in_object(&self.layout.centre(block));
                         let inside = if aabb.contains(&point) {
                             match winding {
                                 Some(winding) if (winding - 0.5).abs() > CERTAIN => {}
