@@ -3,6 +3,8 @@
 mod aabb;
 mod bvh;
 mod cloud;
+// Until an object has one.
+#[allow(dead_code)]
 mod distance_field;
 mod eigen;
 pub mod hull;
