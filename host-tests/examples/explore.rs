@@ -20,6 +20,7 @@ fn main() {
     let pairs: usize = std::env::args().nth(1).map_or(60, |s| s.parse().unwrap());
     let per: usize = std::env::args().nth(2).map_or(4, |s| s.parse().unwrap());
     let env = |k: &str, d: f32| std::env::var(k).map_or(d, |s| s.parse().unwrap());
+    for (k, (n, d)) in [("THIN", 0.0025), ("DISC", 0.6), ("ND", 0.9)].into_iter().enumerate() { hangpose::hanging::KNOBS[k].store(env(n, d).to_bits(), Ordering::Relaxed); }
     let (dt, cv, cw, mu) = (env("DT", 0.004), env("CV", 2.0), env("CW", 6.0), env("MU", 0.4));
     let cases: Vec<_> = case::made(pairs, 100);
     let next = AtomicUsize::new(0);

@@ -23,7 +23,7 @@ pub use object_contact::ObjectContact;
 pub use support_contact::SupportContact;
 pub use predict::{Counts, Prediction, Rejection, Stage, predict};
 pub use supportability::{SupportSite, SupportabilityCounts};
-pub use supporter::{NormalCounts, Supporter};
+pub use supporter::{KNOBS, NormalCounts, Supporter};
 
 use crate::geometry::{Point, PointTree, Vector, mean_shift};
 use crate::memory::{Arena, OutOfMemory, array_bytes};

@@ -9,7 +9,7 @@ use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::Params;
 use crate::perception::sampling;
 
-const VOXELS: usize = 400_000;
+const VOXELS: usize = 1_000_000;
 /// An object, analysed: shape, centre of mass and hanging sites, in object coordinates. Immutable; any number of
 /// threads may match it at once.
 #[derive(Clone, Copy)]

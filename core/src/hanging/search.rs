@@ -13,6 +13,7 @@ pub struct Found {
     pub release: Pose,
     pub rest: Pose,
     pub tilts: u32,
+    pub least: f32,
     pub sank: f32,
     pub contact: u32,
     pub support: u32,
@@ -39,10 +40,22 @@ pub fn search(
     settings: &Settings,
     near: &mut [Near],
     report: &mut dyn FnMut(&Found, &Settings),
-) -> [usize; 4] {
-    let mut stats = [0; 4];
-    let mut candidates: heapless::Vec<Candidate, 1024> = heapless::Vec::new();
+) -> [usize; 5] {
+    let mut stats = [0; 5];
+    let mut candidates: heapless::Vec<Candidate, 8192> = heapless::Vec::new();
     let up = Vector::z();
+    let mut probes = [[0_u32; 16]; 128];
+    for (s, probes) in supports.iter().zip(&mut probes) {
+        let mut n = 0_u32;
+        support.tree.for_each_within(&s.position, 0.03, |near| {
+            // A sample of sixteen, the same in every run.
+            let slot = if n < 16 { n } else { n.wrapping_mul(2_654_435_761) >> 8 & 63 };
+            if slot < 16 {
+                probes[slot as usize] = near.index;
+            }
+            n += 1;
+        });
+    }
     'all: for (i, c) in contacts.iter().enumerate().take(knobs[0] as usize) {
         let down = unit_or(body.centre - c.position, -c.normal);
         let object = frame(c.bar_direction, down);
@@ -58,6 +71,12 @@ pub fn search(
                 for lift in [0.0015, 0.005] {
                     let shift = s.position + up * lift - rotation * c.position;
                     let pose = Pose::from_parts(Translation3::from(shift), rotation);
+                    let to_object = pose.inverse();
+                    let hits = |k: &u32| body.field.distance(&(to_object * support.tree.points()[*k as usize])) < 0.0;
+                    if probes[j].iter().any(hits) {
+                        continue;
+                    }
+                    stats[4] += 1;
                     if !is_clear(body, support, &pose, 0.0005) {
                         continue;
                     }
@@ -90,20 +109,20 @@ pub fn search(
         let settled = settle(body, support, &candidate.pose, settings, near);
         stats[3] += settled.steps;
         let penalty = if settled.fate == Fate::Rests {
-            let mut tilts = 0;
-            for k in 0..4 {
-                let (s, c) = libm::sincosf(core::f32::consts::FRAC_PI_2 * k as f32);
-                let (sin, cos) = libm::sincosf(0.380_482);
-                let gravity = Vector::new(c * sin, s * sin, -cos) * 9.81;
-                let tilted = settle(body, support, &settled.pose, &Settings { gravity, ..*settings }, near);
-                stats[3] += tilted.steps;
-                tilts += u32::from(tilted.fate != Fate::Falls);
+            let mut tilts = 4;
+            let mut least = f32::INFINITY;
+            for k in 0..8 {
+                let angle = core::f32::consts::FRAC_PI_4 * k as f32;
+                let (held, n) = crate::mechanics::tilt(body, support, &settled.pose, settings, angle, knobs[7], near);
+                stats[3] += n;
+                least = least.min(held);
+                if least < knobs[8] { tilts = 0; break; }
             }
             firm += u32::from(tilts == 4);
             let found = Found {
                 release: candidate.pose,
                 rest: settled.pose,
-                tilts,
+                tilts, least,
                 sank: settled.sank,
                 contact: candidate.contact,
                 support: candidate.support,

@@ -21,6 +21,7 @@ pub struct Supporter<'m> {
     tree: PointTree<'m>,
     point_normals: &'m [Vector],
     disc: f32,
+    is_chosen: &'m [u8],
     sites: &'m [SupportSite],
     normals: NormalCounts,
     counts: SupportabilityCounts,
@@ -42,7 +43,7 @@ impl<'m> Supporter<'m> {
     pub const fn bytes(limits: &Limits) -> usize {
         let points = limits.points;
         let model =
-            PointTree::bytes(points).saturating_add(array_bytes::<SupportSite>(supportability::MAX_SITES)).saturating_add(array_bytes::<Vector>(points));
+            PointTree::bytes(points).saturating_add(array_bytes::<SupportSite>(supportability::MAX_SITES)).saturating_add(array_bytes::<Vector>(points)).saturating_add(array_bytes::<u8>(points));
         let scratch = larger(
             PointTree::scratch_bytes(points),
             array_bytes::<Vector>(points).saturating_mul(2).saturating_add(larger(
@@ -70,6 +71,7 @@ impl<'m> Supporter<'m> {
         let sites = arena.slice::<SupportSite>(supportability::MAX_SITES)?;
 
         let in_tree_order = arena.slice::<Vector>(points.len())?;
+        let is_chosen = arena.slice::<u8>(points.len())?;
         let mut scratch = arena.scratch();
         let mut normals = NormalCounts::default();
         if let Some(given) = cloud.normals() {
@@ -92,17 +94,20 @@ impl<'m> Supporter<'m> {
             in_cloud_order[index as usize] = *normal;
         }
         let search = Supportability { tree: &tree, points, normals: in_cloud_order, params };
-        let (counts, stopped) = search.find(sites, &mut meter, scratch)?;
+        let (counts, stopped) = search.find(sites, &mut meter, scratch.scratch())?;
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
         }
-        let disc = 0.6 * spacing(&tree);
-        Ok(Self { tree, point_normals: in_tree_order, disc, sites: &sites[..counts.sites], normals, counts, work: meter.work, stopped })
+        let spacing = spacing(&tree);
+        let thin = knob(0);
+        let disc = knob(1) * spacing.max(thin);
+        choose(&tree, in_tree_order, thin, is_chosen, scratch.slice::<u8>(points.len())?);
+        Ok(Self { tree, point_normals: in_tree_order, disc, is_chosen, sites: &sites[..counts.sites], normals, counts, work: meter.work, stopped })
     }
 
     /// For mechanics.
     pub fn support(&self) -> Support<'_> {
-        Support { tree: &self.tree, normals: self.point_normals, disc: self.disc }
+        Support { tree: &self.tree, normals: self.point_normals, disc: self.disc, is_chosen: self.is_chosen }
     }
 
     /// The points, for neighbour queries.
@@ -149,3 +154,22 @@ fn spacing(tree: &PointTree) -> f32 {
     distances.sort_unstable_by(f32::total_cmp);
     distances[PROBES / 2]
 }
+
+/// Marks points so that every other has one of similar normal within `apart`.
+fn choose(tree: &PointTree, normals: &[Vector], apart: f32, is_chosen: &mut [u8], is_covered: &mut [u8]) {
+    for index in 0..is_chosen.len() {
+        if is_covered[index] > 0 {
+            continue;
+        }
+        is_chosen[index] = 1;
+        tree.for_each_within(&tree.points()[index], apart, |n| {
+            let other = n.index as usize;
+            if normals[other].dot(&normals[index]) > knob(2) {
+                is_covered[other] = 1;
+            }
+        });
+    }
+}
+/// dbg
+pub static KNOBS: [core::sync::atomic::AtomicU32; 4] = [const { core::sync::atomic::AtomicU32::new(0) }; 4];
+fn knob(k: usize) -> f32 { f32::from_bits(KNOBS[k].load(core::sync::atomic::Ordering::Relaxed)) }

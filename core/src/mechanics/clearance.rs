@@ -6,6 +6,7 @@ use crate::geometry::{Aabb, Pose};
 /// Whether every point of the supporter is farther than `clearance` metres from the object at `pose`.
 pub fn is_clear(body: &Body, support: &Support, pose: &Pose, clearance: f32) -> bool {
     let to_object = pose.inverse();
+    let clearance = clearance.min(0.9 * body.field.band());
     let mut clear = true;
     support.tree.bvh().descend(|_, node| {
         if !clear {

@@ -15,6 +15,8 @@ pub struct Support<'a> {
     pub normals: &'a [Vector],
     /// Radius of the disc around each point, metres.
     pub disc: f32,
+    /// Which points stand for their neighbours: not zero.
+    pub is_chosen: &'a [u8],
 }
 
 /// Contacts solved for at once, at most; a rigid body needs no more than a handful.
@@ -31,6 +33,10 @@ pub(crate) struct Contact {
     pub(crate) normal: Vector,
     /// Distance between the surfaces, negative in penetration, metres.
     pub(crate) gap: f32,
+    /// The touched point of the body against its centre of mass, in its own coordinates.
+    anchor: Vector,
+    /// The gap less the anchor's place along the normal: what stays while the normal does.
+    offset: f32,
 }
 
 pub(crate) type Contacts = Vec<Contact, MAX_CONTACTS>;
@@ -50,6 +56,8 @@ pub(crate) struct Neighbourhood<'s> {
     count: usize,
     /// How far any point of the body can have moved since the start, metres.
     odometer: f32,
+    /// The odometer up to which the last contacts can be carried along.
+    carried_until: f32,
     /// The odometer up to which no point outside the list can be in contact.
     valid_until: f32,
     /// Whether there were more points near than the list holds.
@@ -61,7 +69,7 @@ const SURROUNDINGS: f32 = 0.02;
 
 impl<'s> Neighbourhood<'s> {
     pub(crate) fn new(near: &'s mut [Near]) -> Self {
-        Self { near, count: 0, odometer: 0.0, valid_until: -1.0, is_crowded: false }
+        Self { near, count: 0, odometer: 0.0, carried_until: -1.0, valid_until: -1.0, is_crowded: false }
     }
 
     /// Tells that no point of the body moved farther than `distance` since the last call.
@@ -80,7 +88,7 @@ impl<'s> Neighbourhood<'s> {
             if body.field.distance(&(to_object * aabb.centre())) - radius > surroundings {
                 return false;
             }
-            for index in node.items().into_iter().flatten() {
+            for index in node.items().into_iter().flatten().filter(|&i| support.is_chosen[i] > 0) {
                 if self.count < self.near.len() {
                     self.near[self.count] = Near { index: index as u32, sleeps_until: -1.0 };
                     self.count += 1;
@@ -93,31 +101,58 @@ impl<'s> Neighbourhood<'s> {
         self.valid_until = self.odometer + surroundings - reach;
     }
 
-    /// The contacts with a gap below `margin`, at most [`MAX_CONTACTS`] that stand for all.
-    pub(crate) fn contacts(&mut self, body: &Body, support: &Support, state: &State, margin: f32) -> Contacts {
+    /// Brings `contacts` up to date: those with a gap below `margin`, at most [`MAX_CONTACTS`] that stand for all.
+    pub(crate) fn update(
+        &mut self,
+        contacts: &mut Contacts,
+        body: &Body,
+        support: &Support,
+        state: &State,
+        margin: f32,
+        time_step: f32,
+    ) {
+        let rotation = state.rotation.to_rotation_matrix();
+        if self.odometer <= self.carried_until {
+            for contact in contacts.iter_mut() {
+                contact.position = state.centre + rotation * contact.anchor;
+                // The supporter stands still: what the touched point moved along the normal opens or closes the gap.
+                contact.gap = contact.offset + contact.position.coords.dot(&contact.normal);
+            }
+            return;
+        }
+        let margin = margin + CARRY;
+        self.carried_until = self.odometer + CARRY;
         // A disc's rim comes nearer than its centre.
         let reach = margin + support.disc;
         if self.odometer > self.valid_until {
             self.gather(body, support, state, reach);
         }
-        let rotation = state.rotation.to_rotation_matrix();
-        let mut awake = 0;
-        let mut touching = 0;
-        let mut contacts = Contacts::new();
+        contacts.clear();
+        DEBUG[0].fetch_add(1, core::sync::atomic::Ordering::Relaxed);
         for near in &mut self.near[..self.count] {
             if near.sleeps_until > self.odometer {
                 continue;
             }
-            awake += 1;
+            DEBUG[1].fetch_add(1, core::sync::atomic::Ordering::Relaxed);
             let point = support.tree.points()[near.index as usize];
-            let mut at = body.centre + rotation.inverse_transform_vector(&(point - state.centre));
+            let arm = point - state.centre;
+            // What is near a pivot hardly moves, however fast the rest does.
+            let margin = margin + (state.velocity + state.spin.cross(&arm)).norm() * time_step;
+            let reach = margin + support.disc;
+            let mut at = body.centre + rotation.inverse_transform_vector(&arm);
             let (mut gap, mut gradient) = body.field.sample(&at);
             if gap > reach {
                 near.sleeps_until = self.odometer + gap - reach;
                 continue;
             }
-            if support.disc > 0.0 {
-                let normal = rotation.inverse_transform_vector(&support.normals[near.index as usize]);
+            let normal = rotation.inverse_transform_vector(&support.normals[near.index as usize]);
+            let slope = gradient - normal * gradient.dot(&normal);
+            let least = gap - support.disc * slope.norm();
+            if least > margin {
+                near.sleeps_until = self.odometer + least - margin;
+                continue;
+            }
+            if gap > -0.001 {
                 let (best, found) = nearest_on_disc(body, at, gap, gradient, &normal, support.disc);
                 (at, gap, gradient) = (best, found.0, found.1);
             }
@@ -125,18 +160,18 @@ impl<'s> Neighbourhood<'s> {
                 near.sleeps_until = self.odometer + gap - margin;
                 continue;
             }
-            touching += 1;
+            DEBUG[2].fetch_add(1, core::sync::atomic::Ordering::Relaxed);
             let normal = -(rotation * gradient);
-            let position = state.centre + rotation * (at - body.centre);
-            keep(&mut contacts, Contact { index: near.index, position, normal, gap });
+            let anchor = at - body.centre;
+            let position = state.centre + rotation * anchor;
+            let offset = gap - position.coords.dot(&normal);
+            keep(contacts, Contact { index: near.index, position, normal, gap, anchor, offset });
         }
-        DEBUG[0].fetch_add(1, core::sync::atomic::Ordering::Relaxed);
-        DEBUG[1].fetch_add(awake, core::sync::atomic::Ordering::Relaxed);
-        DEBUG[2].fetch_add(touching, core::sync::atomic::Ordering::Relaxed);
-        DEBUG[3].fetch_add(self.count as u64, core::sync::atomic::Ordering::Relaxed);
-        contacts
     }
 }
+
+/// How far the body may move before contacts are looked for again, metres.
+const CARRY: f32 = 0.0002;
 /// dbg
 pub static DEBUG: [core::sync::atomic::AtomicU64; 6] = [const { core::sync::atomic::AtomicU64::new(0) }; 6];
 
@@ -150,7 +185,7 @@ fn nearest_on_disc(
     radius: f32,
 ) -> (Point, (f32, Vector)) {
     let (mut best, mut found) = (at, (gap, gradient));
-    for _ in 0..2 {
+    for _ in 0..1 {
         let slope = found.1 - normal * found.1.dot(normal);
         let steepness = slope.norm();
         if steepness < 0.1 {

@@ -1,6 +1,6 @@
 //! From where to let go so that the object comes to rest as found: a little off every contact.
 
-use super::contact::{Near, Neighbourhood};
+use super::contact::{Contacts, Near, Neighbourhood};
 use super::settle::world_inertia;
 use super::{Body, Support, solver};
 use crate::geometry::{Pose, Vector};
@@ -18,9 +18,10 @@ pub fn release_pose(
     const STEPS: usize = 30;
     let mut state = body.at(rest);
     let mut neighbourhood = Neighbourhood::new(near);
+    let mut contacts = Contacts::new();
     let mut best = (*rest, f32::NEG_INFINITY);
     for step in 0..STEPS {
-        let contacts = neighbourhood.contacts(body, support, &state, clearance);
+        neighbourhood.update(&mut contacts, body, support, &state, clearance, 0.0);
         let gap = contacts.iter().map(|c| c.gap).fold(clearance, f32::min);
         if gap > best.1 {
             best = (body.pose(&state), gap);

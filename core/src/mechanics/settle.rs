@@ -54,41 +54,66 @@ pub struct Settled {
 const WINDOW: usize = 20;
 const STILL: f32 = 0.0004;
 
-/// Lets the body go at `release`.
-pub fn settle(body: &Body, support: &Support, release: &Pose, settings: &Settings, near: &mut [Near]) -> Settled {
-    let mut state = body.at(release);
-    let start = state;
-    let down = settings.gravity.normalize();
-    let limit = 0.06_f32.max(0.5 * body.extent);
-    let dt = settings.time_step;
-    let mut neighbourhood = Neighbourhood::new(near);
-    let mut impulses = Impulses::new();
-    let mut mark = state;
-    let mut contacts = Contacts::new();
-    let mut fate = Fate::Moves;
-    let mut steps = 0;
-    let keep = settings.damping.map(|rate| 1.0 / (1.0 + rate * dt));
-    while steps < settings.steps {
-        steps += 1;
-        let speed = state.velocity.norm() + state.spin.norm() * body.reach;
-        let margin = 0.0005 + dt * (speed + dt * 9.81);
-        contacts = neighbourhood.contacts(body, support, &state, margin);
-        state.velocity += settings.gravity * dt;
-        let inverse = world_inertia(body, &state);
-        impulses = solver::solve(&mut state, &inverse, &contacts, &impulses, settings.friction, dt);
-        let touches = impulses.iter().any(|i| i.normal > 0.0);
-        if touches {
-            state.velocity *= keep[0];
-            state.spin *= keep[1];
+/// The body in motion.
+pub(crate) struct Motion<'a, 's> {
+    pub(crate) body: &'a Body<'a>,
+    pub(crate) support: &'a Support<'a>,
+    pub(crate) state: State,
+    pub(crate) touches: bool,
+    pub(crate) contacts: Contacts,
+    neighbourhood: Neighbourhood<'s>,
+    impulses: Impulses,
+}
+
+impl<'a, 's> Motion<'a, 's> {
+    pub(crate) fn new(body: &'a Body, support: &'a Support, state: State, near: &'s mut [Near]) -> Self {
+        Self {
+            body,
+            support,
+            state,
+            touches: false,
+            contacts: Contacts::new(),
+            neighbourhood: Neighbourhood::new(near),
+            impulses: Impulses::new(),
+        }
+    }
+
+    pub(crate) fn step(&mut self, gravity: &Vector, settings: &Settings) {
+        let (state, body, dt) = (&mut self.state, self.body, settings.time_step);
+        let margin = 0.0003 + dt * dt * 9.81;
+        self.neighbourhood.update(&mut self.contacts, body, self.support, state, margin, dt);
+        state.velocity += gravity * dt;
+        let inverse = world_inertia(body, state);
+        self.impulses = solver::solve(state, &inverse, &self.contacts, &self.impulses, settings.friction, dt);
+        self.touches = self.impulses.iter().any(|i| i.normal > 0.0);
+        if self.touches {
+            state.velocity *= 1.0 / (1.0 + settings.damping[0] * dt);
+            state.spin *= 1.0 / (1.0 + settings.damping[1] * dt);
         }
         let (mut shift, mut turn) = (state.velocity * dt, state.spin * dt);
-        if contacts.iter().any(|c| c.gap < 0.0) {
-            let (s, t) = solver::separate(&state, &inverse, &contacts, 0.0);
+        if self.contacts.iter().any(|c| c.gap < 0.0) {
+            let (s, t) = solver::separate(state, &inverse, &self.contacts, 0.0);
             shift += s;
             turn += t;
         }
         state.advance(&shift, &turn);
-        neighbourhood.moved(shift.norm() + turn.norm() * body.reach);
+        self.neighbourhood.moved(shift.norm() + turn.norm() * body.reach);
+    }
+}
+
+/// Lets the body go at `release`.
+pub fn settle(body: &Body, support: &Support, release: &Pose, settings: &Settings, near: &mut [Near]) -> Settled {
+    let start = body.at(release);
+    let down = settings.gravity.normalize();
+    let limit = 0.06_f32.max(0.5 * body.extent);
+    let mut motion = Motion::new(body, support, start, near);
+    let mut mark = start;
+    let mut fate = Fate::Moves;
+    let mut steps = 0;
+    while steps < settings.steps {
+        steps += 1;
+        motion.step(&settings.gravity, settings);
+        let state = &motion.state;
         let sank = down.dot(&(state.centre - start.centre));
         if sank > limit {
             fate = Fate::Falls;
@@ -97,13 +122,14 @@ pub fn settle(body: &Body, support: &Support, release: &Pose, settings: &Setting
         if steps % WINDOW == 0 {
             let moved = (state.centre - mark.centre).norm()
                 + state.rotation.angle_to(&mark.rotation) * body.reach;
-            if touches && moved < STILL {
+            if motion.touches && moved < STILL {
                 fate = Fate::Rests;
                 break;
             }
-            mark = state;
+            mark = *state;
         }
     }
+    let (state, contacts) = (motion.state, motion.contacts);
     Settled {
         fate,
         pose: body.pose(&state),

@@ -19,7 +19,7 @@ pub(super) const fn max_blocks(voxels: usize) -> usize {
 /// Voxels are no finer than the largest extent over this,
 const FINEST: f32 = 400.0;
 /// or than this, in metres, unless the largest extent has fewer than `FEWEST` of them,
-const FINEST_METRES: f32 = 0.3e-3;
+const FINEST_METRES: f32 = 0.8e-3;
 const FEWEST: f32 = 100.0;
 /// or than the largest coordinate over this, so that `f32` can tell a hundred points apart in each.
 const FINEST_COORDINATE: f32 = 65_536.0;
