@@ -117,7 +117,7 @@ impl<'m> DistanceField<'m> {
         }
         let (mut nearest, places) = nearest::Nearest::new(grid, bricks, &mut scratch)?;
         nearest.seed(surface, &layout, grid, frames);
-        nearest.spread(&layout, grid, places, frames);
+        nearest.spread(surface, &layout, grid, places, frames);
 
         let far_signs = scratch.slice::<u8>(grid.len())?;
         sign::find(surface, &layout, grid, places, &nearest, frames, nodes, far_signs, scratch.scratch())?;
