@@ -21,8 +21,10 @@ const LANES: usize = 4;
 const NONE: u32 = u32::MAX;
 /// How often neighbours are asked again at most; 6 were found to be needed.
 const REPAIRS: usize = 16;
-/// The nodes of a brick closer than this know their nearest triangle before any other asks, in voxels.
-const EXACT: f32 = 1.0;
+/// The nodes of a brick closer than this know their nearest triangle before any other asks, in voxels. More than one: what
+/// is found for other nodes may be too far, but not so that two neighbours seem to have room between them when they have
+/// none.
+const EXACT: f32 = 1.01;
 
 /// The nearest triangle of every node of every brick.
 pub(super) struct Nearest<'s> {
