@@ -29,7 +29,7 @@ use layout::Layout;
 /// interpolation.
 ///
 /// Within [`band`](Self::band) of the mesh they are off by a few hundredths of a voxel where the mesh is flat or curves over
-/// many voxels, and by half a voxel at most at sharp edges and where another side is as close. In walls thinner than a voxel
+/// many voxels, and by about half a voxel at sharp edges and where another side is as close. In walls thinner than a voxel
 /// it may be the thickness of the wall, and the wall may be lost. Beyond the band they are on the safe side: never further
 /// from zero than the distance is.
 ///
