@@ -6,6 +6,8 @@ pub(super) const BLOCK: u32 = 4;
 pub(super) const SIDE: usize = BLOCK as usize + 1;
 /// Nodes of a brick.
 pub(super) const BRICK_NODES: usize = SIDE * SIDE * SIDE;
+/// The same, filled up so that they can be worked on by fours.
+pub(super) const PADDED: usize = 128;
 /// How much the index of a node grows along each axis.
 pub(super) const STEP: [usize; 3] = [1, SIDE, SIDE * SIDE];
 
@@ -32,6 +34,18 @@ pub(super) const DIAGONAL: [Nodes; BRICK_NODES] = neighbours(3);
 pub(super) const fn coordinates(node: usize) -> [usize; 3] {
     [node % SIDE, node / SIDE % SIDE, node / (SIDE * SIDE)]
 }
+
+/// Coordinates of all nodes, an axis each.
+pub(super) const COORDINATES: [[f32; PADDED]; 3] = {
+    let mut all = [[0.0; PADDED]; 3];
+    let mut node = 0;
+    while node < BRICK_NODES {
+        let at = coordinates(node);
+        (all[0][node], all[1][node], all[2][node]) = (at[0] as f32, at[1] as f32, at[2] as f32);
+        node += 1;
+    }
+    all
+};
 
 const fn layer(axis: usize) -> Nodes {
     let (mut nodes, mut node) = (0, 0);
@@ -72,6 +86,21 @@ pub(super) fn dilate(mut nodes: Nodes) -> Nodes {
     nodes
 }
 
+/// The nodes for whose value and the value `step` nodes on something is true.
+#[inline]
+pub(super) fn compare(values: &[f32; PADDED], step: usize, is: impl Fn(f32, f32) -> bool) -> Nodes {
+    let mut flags = [0_u8; PADDED];
+    for (flag, (&a, &b)) in flags[..BRICK_NODES - step].iter_mut().zip(values.iter().zip(&values[step..])) {
+        *flag = u8::from(is(a, b));
+    }
+    // Eight bytes to eight bits: each is moved to the top by a factor of its own.
+    let (bytes, _) = flags.as_chunks();
+    bytes.iter().rev().fold(0, |all, &byte| {
+        let bits = u64::from_le_bytes(byte).wrapping_mul(0x0102_0408_1020_4080) >> 56;
+        all << 8 | Nodes::from(bits)
+    })
+}
+
 /// The nodes of a set, in order.
 pub(super) fn each(mut nodes: Nodes) -> impl Iterator<Item = usize> {
     core::iter::from_fn(move || {
@@ -93,6 +122,12 @@ mod tests {
         for node in 0..BRICK_NODES {
             assert_eq!(dilate(1 << node), 1 << node | BESIDE[node] | DIAGONAL[node]);
         }
+        let mut values = [0.0; PADDED];
+        for node in [3, 8, 77, 124] {
+            values[node] = 1.0;
+        }
+        assert_eq!(compare(&values, 0, |a, _| a > 0.5), 1 << 3 | 1 << 8 | 1 << 77 | 1 << 124);
+        assert_eq!(compare(&values, 5, |a, b| a + b > 1.5), 1 << 3);
         assert_eq!(each(LOW[2] | HIGH[0]).count(), 45);
     }
 }

@@ -43,6 +43,12 @@ impl Frame {
         dot(&self.axes[2], &self.relative(point))
     }
 
+    /// How much the height changes at most over steps along x and y.
+    #[inline]
+    pub(super) fn slope(&self, x: f32, y: f32) -> f32 {
+        self.axes[2][0].abs() * x + self.axes[2][1].abs() * y
+    }
+
     /// Square of the distance from `point` to the triangle.
     #[inline]
     pub(super) fn distance_squared(&self, point: &Vector) -> f32 {
@@ -50,14 +56,16 @@ impl Frame {
         let [x, y, z] = [dot(&self.axes[0], &p), dot(&self.axes[1], &p), dot(&self.axes[2], &p)];
         let [[ux, uy, u_length], [vx, vy, v_length]] = self.edges;
         // Along each edge, how far beyond its ends; and how far inwards of it.
-        let beyond = |along: f32, length: f32| along - along.min(length).max(0.0);
+        let beyond = |along: f32, length: f32| along - greater(lesser(along, length), 0.0);
         let from_b = x - self.length;
         let (along_b, in_b) = (from_b * ux + y * uy, y * ux - from_b * uy);
         let (along_c, in_c) = (x * vx + y * vy, x * vy - y * vx);
-        let (end_a, end_b, end_c) =
-            (beyond(x, self.length), beyond(along_b, u_length), beyond(along_c, v_length));
-        let least = (end_a * end_a + y * y).min(end_b * end_b + in_b * in_b).min(end_c * end_c + in_c * in_c);
-        let across = if y.min(in_b).min(in_c) >= 0.0 { 0.0 } else { least };
+        let end_a = beyond(x, self.length);
+        let end_b = beyond(along_b, u_length);
+        let end_c = beyond(along_c, v_length);
+        let least =
+            lesser(lesser(end_a * end_a + y * y, end_b * end_b + in_b * in_b), end_c * end_c + in_c * in_c);
+        let across = if lesser(lesser(y, in_b), in_c) >= 0.0 { 0.0 } else { least };
         across + z * z
     }
 
@@ -65,6 +73,17 @@ impl Frame {
     fn relative(&self, point: &Vector) -> [f32; 3] {
         [point.x - self.origin[0], point.y - self.origin[1], point.z - self.origin[2]]
     }
+}
+
+/// As `min`, but one instruction: nothing here is not a number.
+#[inline]
+fn lesser(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+#[inline]
+fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 #[inline]

@@ -28,9 +28,14 @@ use layout::Layout;
 /// Signed distances to a mesh around it, in object coordinates: an approximation of [`Surface::signed_distance`] by
 /// interpolation.
 ///
-/// Within [`band`](Self::band) of the mesh they are off by no more than a third of a voxel, where the mesh has sharp edges
-/// or the point is as close to another side, and by a hundredth where the mesh is flat. Beyond it they are on the
-/// safe side: never further from zero than the distance is, and of its sign.
+/// Within [`band`](Self::band) of the mesh they are off by a few hundredths of a voxel where the mesh is flat or curves over
+/// many voxels, and by about half a voxel at sharp edges and where another side is as close. In walls thinner than a voxel
+/// it may be the thickness of the wall, and the wall may be lost. Beyond the band they are on the safe side: never further
+/// from zero than the distance is.
+///
+/// What is inside is [`Surface::is_inside`]'s to say. Around a closed mesh the sign is right wherever the distance is more
+/// than that error. Around an open one the inside ends somewhere in the opening; there the sign may change a block, four
+/// voxels, too early or late.
 #[derive(Clone, Copy)]
 pub struct DistanceField<'m> {
     layout: Layout,
@@ -117,7 +122,7 @@ impl<'m> DistanceField<'m> {
         }
         let (mut nearest, places) = nearest::Nearest::new(grid, bricks, &mut scratch)?;
         nearest.seed(surface, &layout, grid, frames);
-        nearest.spread(&layout, grid, places, frames);
+        nearest.spread(surface, &layout, grid, places, frames);
 
         let far_signs = scratch.slice::<u8>(grid.len())?;
         sign::find(surface, &layout, grid, places, &nearest, frames, nodes, far_signs, scratch.scratch())?;

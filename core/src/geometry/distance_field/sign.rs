@@ -7,7 +7,7 @@
 
 use super::super::{Point, Surface, Vector};
 use super::brick::{
-    ACROSS, ALL, BESIDE, BLOCK, BRICK_NODES, DIAGONAL, HIGH, LOW, Nodes, STEP, coordinates, each,
+    ACROSS, ALL, BESIDE, BLOCK, BRICK_NODES, DIAGONAL, HIGH, LOW, Nodes, STEP, compare, coordinates, each,
 };
 use super::frame::Frame;
 use super::layout::Layout;
@@ -117,11 +117,7 @@ impl Sides<'_, '_> {
     fn link(&mut self) {
         for (links, distances) in self.links.iter_mut().zip(self.nearest.distances.iter()) {
             for axis in 0..3 {
-                let mut linked = 0;
-                for node in 0..BRICK_NODES - STEP[axis] {
-                    let room = distances[node] + distances[node + STEP[axis]];
-                    linked |= Nodes::from(room > 1.001) << node;
-                }
+                let linked = compare(distances, STEP[axis], |a, b| a + b > 1.001);
                 links[axis] = linked & !HIGH[axis];
             }
         }
@@ -295,8 +291,9 @@ impl Sides<'_, '_> {
     fn finish(&mut self, nodes: &mut [i16]) {
         for brick in 0..self.places.len() {
             let mut inside = self.sides[1][brick];
+            let mut verdicts = [None; 2];
             for node in each(self.unknown(brick)) {
-                inside |= Nodes::from(self.is_inside(brick, node)) << node;
+                inside |= Nodes::from(self.is_inside(brick, node, &mut verdicts)) << node;
             }
             self.sides[1][brick] = inside;
             let distances = &self.nearest.distances[brick];
@@ -307,17 +304,18 @@ impl Sides<'_, '_> {
         }
     }
 
-    /// Whether a node very close to the mesh is inside.
-    fn is_inside(&self, brick: usize, node: usize) -> bool {
+    /// Whether a node very close to the mesh is inside. `verdicts` are those on nodes of the brick that were behind and in
+    /// front of their nearest triangle.
+    fn is_inside(&self, brick: usize, node: usize, verdicts: &mut [Option<bool>; 2]) -> bool {
         let local = self.local(brick, node);
         let (distances, triangles) = (&self.nearest.distances[brick], &self.nearest.triangles[brick]);
         let frame = &self.frames[triangles[node] as usize];
         let height = frame.height(&local);
-        if self.is_simple {
-            if height.abs() >= ABOVE_FACE * distances[node] {
-                return height * self.surface.orientation() < 0.0;
-            }
-        } else {
+        let is_above_face = height.abs() >= ABOVE_FACE * distances[node];
+        if self.is_simple && is_above_face {
+            return height * self.surface.orientation() < 0.0;
+        }
+        if !self.is_simple {
             // As a neighbour that is on the same side of both triangles.
             let known = self.sides[0][brick] | self.sides[1][brick];
             for other in each((BESIDE[node] | DIAGONAL[node]) & known) {
@@ -327,7 +325,18 @@ impl Sides<'_, '_> {
                 }
             }
         }
-        self.surface.is_inside(&self.point(brick, node))
+        // In walls thinner than a voxel there are many, and what is right behind one face is right behind the next.
+        let verdict = &mut verdicts[usize::from(height > 0.0)];
+        match *verdict {
+            Some(inside) if is_above_face => inside,
+            _ => {
+                let inside = self.surface.is_inside(&self.point(brick, node));
+                if is_above_face {
+                    *verdict = Some(inside);
+                }
+                inside
+            }
+        }
     }
 }
 
@@ -344,7 +353,7 @@ fn octant_nodes(octant: usize) -> Nodes {
 /// The sum over all edges of a number for each, whose sign an edge and its reverse differ in. That the sum is zero by
 /// chance is as likely as to guess 64 bits. Corners count as the same if they are within a 65536th of the box, far less
 /// than a voxel: a crack as narrow does not let anything through.
-fn is_closed(surface: &Surface) -> bool {
+pub(super) fn is_closed(surface: &Surface) -> bool {
     let scramble = |mut x: u64| {
         x = (x ^ x >> 32).wrapping_mul(0x9E6C_63D0_676A_9A99);
         x = (x ^ x >> 29).wrapping_mul(0xD3B5_4F1C_8A2E_7B45);

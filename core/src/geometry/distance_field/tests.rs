@@ -129,6 +129,27 @@ fn distances_are_those_of_the_surface() {
     }
 }
 
+/// Where the surface is smooth and no other is near, gradients point straight away from the mesh.
+#[test]
+fn gradients_point_away() {
+    let turn = |p: &Point, ring: f32| p.coords - Vector::new(p.x, p.y, 0.0).normalize() * ring;
+    for voxels in [60_000, 400_000] {
+        with_field(&torus(0.05, 0.015, 120, 60), false, voxels, |_, field| {
+            let mut random = Random::new(4);
+            for _ in 0..20_000 {
+                let p = Point::from([(); 3].map(|()| (random.next_f32() - 0.5) * 0.16));
+                let out = turn(&p, 0.05);
+                if (out.norm() - 0.015).abs() < field.band() {
+                    let (_, gradient) = field.sample(&p);
+                    let angle = gradient.dot(&out.normalize()).clamp(-1.0, 1.0).acos().to_degrees();
+                    // Its faces are six degrees apart.
+                    assert!(angle < 8.0, "{voxels} {p}: {angle}");
+                }
+            }
+        });
+    }
+}
+
 /// In the middle of a wall the distance is that of its sides, and on them it is next to nothing.
 #[test]
 fn thin_walls_stay() {
