@@ -62,8 +62,11 @@ impl MassProperties {
         let e = aabb.extents();
         let bounds_volume = is_closed && volume.abs() as f32 > LEAST_VOLUME * e.x * e.y * e.z;
         let centroid = (middle + moment / volume).cast::<f32>();
-        let (spread, mean) =
-            if bounds_volume { (solid / volume, moment / volume) } else { (shell / area, shell_moment / area) };
+        let (spread, mean) = if bounds_volume {
+            (solid / volume, moment / volume)
+        } else {
+            (shell / area, shell_moment / area)
+        };
         let spread = spread - mean * mean.transpose();
         let inertia = (Matrix3::identity() * spread.trace() - spread).cast::<f32>();
         Ok(Self {

@@ -1,14 +1,17 @@
 //! The method, one file a section of the paper.
 
+mod candidates;
 mod cost;
 mod error;
 mod hangability;
 mod matching;
 mod object;
 mod object_contact;
-pub mod search;
-mod support_contact;
+mod pose;
 mod predict;
+mod probability;
+mod settling;
+mod support_contact;
 mod supportability;
 mod supporter;
 #[cfg(test)]
@@ -17,13 +20,15 @@ mod tests;
 pub use cost::Cost;
 pub use error::AnalysisError;
 pub use hangability::{HangabilityCounts, HangingSite};
-pub use matching::{HangingPose, MatchingCounts};
+pub use matching::MatchingCounts;
 pub use object::Object;
 pub use object_contact::ObjectContact;
+pub use pose::{HangingPose, Rest, SiteMatch};
+pub use predict::{Counts, PredictError, Prediction, Rejection, Stage, predict, predict_bytes};
+pub use settling::SettlingCounts;
 pub use support_contact::SupportContact;
-pub use predict::{Counts, Prediction, Rejection, Stage, predict};
 pub use supportability::{SupportSite, SupportabilityCounts};
-pub use supporter::{KNOBS, NormalCounts, Supporter};
+pub use supporter::{NormalCounts, Supporter};
 
 use crate::geometry::{Point, PointTree, Vector, mean_shift};
 use crate::memory::{Arena, OutOfMemory, array_bytes};

@@ -1,21 +1,23 @@
 //! The object as mechanics sees it: a rigid body of one density.
 
-use crate::geometry::{DistanceField, Point, Pose, Vector};
-use nalgebra::{Matrix3, Translation3, UnitQuaternion};
+use crate::geometry::{DistanceField, Point, Pose, Surface, Vector};
+use nalgebra::{Matrix3, Quaternion, Translation3, UnitQuaternion};
 
-/// A rigid body: shape, centre of mass and inertia, in object coordinates. Its mass is one: nothing here depends on it.
+/// A rigid body of unit mass: nothing here depends on how heavy it is. In object coordinates.
 #[derive(Clone, Copy)]
-pub struct Body<'a> {
-    /// The shape.
-    pub field: &'a DistanceField<'a>,
+pub(crate) struct Body<'a> {
+    /// The shape, for what has to be fast.
+    pub(crate) field: &'a DistanceField<'a>,
+    /// The shape, for what has to be exact.
+    pub(crate) surface: &'a Surface<'a>,
     /// Centre of mass, metres.
-    pub centre: Point,
-    /// Inverse of the inertia tensor of a unit mass about the centre, 1/m².
-    pub inverse_inertia: Matrix3<f32>,
+    pub(crate) centre: Point,
+    /// Inverse of the inertia tensor about the centre of mass, 1/m².
+    pub(crate) inverse_inertia: Matrix3<f32>,
     /// Distance from the centre of mass to the farthest point of the shape, metres.
-    pub reach: f32,
+    pub(crate) reach: f32,
     /// The largest extent of the shape, metres.
-    pub extent: f32,
+    pub(crate) extent: f32,
 }
 
 /// Where the body is and how it moves, in supporter coordinates.
@@ -31,7 +33,7 @@ pub(crate) struct State {
 }
 
 impl Body<'_> {
-    /// At rest at `pose`.
+    /// At rest at `pose`, object to supporter.
     pub(crate) fn at(&self, pose: &Pose) -> State {
         State {
             centre: pose * self.centre,
@@ -46,22 +48,37 @@ impl Body<'_> {
         let shift = state.centre - state.rotation * self.centre;
         Pose::from_parts(Translation3::from(shift), state.rotation)
     }
+
+    /// The inverse of the inertia tensor in supporter coordinates.
+    pub(crate) fn inverse_inertia_in(&self, state: &State) -> Matrix3<f32> {
+        let rotation = state.rotation.to_rotation_matrix();
+        rotation.matrix() * self.inverse_inertia * rotation.matrix().transpose()
+    }
+
+    /// How far the farthest point of the body can be from where it was, metres.
+    pub(crate) fn travel(&self, from: &State, to: &State) -> f32 {
+        (to.centre - from.centre).norm() + from.rotation.angle_to(&to.rotation) * self.reach
+    }
 }
 
 impl State {
-    /// Moves on by the displacement and the rotation vector given.
+    /// Moves on by a displacement and a rotation vector.
     pub(crate) fn advance(&mut self, shift: &Vector, turn: &Vector) {
         self.centre += shift;
         self.rotation = rotation_by(turn) * self.rotation;
         self.rotation.renormalize_fast();
     }
+
+    /// The velocity of the point of the body that is `arm` from its centre of mass.
+    pub(crate) fn velocity_at(&self, arm: &Vector) -> Vector {
+        self.velocity + self.spin.cross(arm)
+    }
 }
 
 /// The rotation about `turn` by its length in radians.
-pub(crate) fn rotation_by(turn: &Vector) -> UnitQuaternion<f32> {
+fn rotation_by(turn: &Vector) -> UnitQuaternion<f32> {
     let half = 0.5 * turn.norm();
-    // sin(x)/x without a division by zero.
-    let scale = if half > 1e-4 { libm::sinf(half) / half } else { 1.0 - half * half / 6.0 };
-    let imaginary = turn * (0.5 * scale);
-    UnitQuaternion::new_normalize(nalgebra::Quaternion::from_parts(libm::cosf(half), imaginary))
+    // sin(x) / x, without a division by zero.
+    let scale = if half > 1e-3 { libm::sinf(half) / half } else { 1.0 - half * half / 6.0 };
+    UnitQuaternion::new_normalize(Quaternion::from_parts(libm::cosf(half), turn * (0.5 * scale)))
 }

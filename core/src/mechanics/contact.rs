@@ -1,26 +1,14 @@
-//! Where the object and the supporter touch.
+//! Where the body and the supporter touch.
 
-use super::Body;
 use super::body::State;
-use crate::geometry::{Point, PointTree, Vector};
+use super::{Body, Support};
+use crate::geometry::{Point, Vector};
+use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
 use heapless::Vec;
 
-/// The supporter as mechanics sees it: points that stand for discs of its surface.
-#[derive(Clone, Copy)]
-pub struct Support<'a> {
-    /// The points.
-    pub tree: &'a PointTree<'a>,
-    /// Unit normals in tree order.
-    pub normals: &'a [Vector],
-    /// Radius of the disc around each point, metres.
-    pub disc: f32,
-    /// Which points stand for their neighbours: not zero.
-    pub is_chosen: &'a [u8],
-}
-
 /// Contacts solved for at once, at most; a rigid body needs no more than a handful.
-pub(crate) const MAX_CONTACTS: usize = 12;
+pub(crate) const MOST: usize = 12;
 
 /// A place where the body is at, or close to, the supporter.
 #[derive(Clone, Copy, Debug)]
@@ -39,12 +27,12 @@ pub(crate) struct Contact {
     offset: f32,
 }
 
-pub(crate) type Contacts = Vec<Contact, MAX_CONTACTS>;
+pub(crate) type Contacts = Vec<Contact, MOST>;
 
 /// A point of the supporter near the body, and how far the body may move before it can touch it.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
-pub struct Near {
+pub(crate) struct Near {
     index: u32,
     /// The odometer below which it cannot be in contact.
     sleeps_until: f32,
@@ -60,8 +48,6 @@ pub(crate) struct Neighbourhood<'s> {
     carried_until: f32,
     /// The odometer up to which no point outside the list can be in contact.
     valid_until: f32,
-    /// Whether there were more points near than the list holds.
-    pub(crate) is_crowded: bool,
 }
 
 /// How far around the body points are gathered, metres.
@@ -69,7 +55,7 @@ const SURROUNDINGS: f32 = 0.02;
 
 impl<'s> Neighbourhood<'s> {
     pub(crate) fn new(near: &'s mut [Near]) -> Self {
-        Self { near, count: 0, odometer: 0.0, carried_until: -1.0, valid_until: -1.0, is_crowded: false }
+        Self { near, count: 0, odometer: 0.0, carried_until: -1.0, valid_until: -1.0 }
     }
 
     /// Tells that no point of the body moved farther than `distance` since the last call.
@@ -77,136 +63,108 @@ impl<'s> Neighbourhood<'s> {
         self.odometer += distance;
     }
 
-    fn gather(&mut self, body: &Body, support: &Support, state: &State, reach: f32) {
-        self.count = 0;
-        DEBUG[4].fetch_add(1, core::sync::atomic::Ordering::Relaxed);
+    /// Lists the representatives around the body, so that nothing farther off is looked at for a while.
+    fn gather(&mut self, body: &Body, support: &Support, state: &State, reach: f32) -> usize {
         let surroundings = SURROUNDINGS.max(2.0 * reach);
         let to_object = body.pose(state).inverse();
+        let mut queries = 0;
+        self.count = 0;
         support.tree.bvh().descend(|_, node| {
             let aabb = node.aabb();
-            let radius = 0.5 * aabb.diagonal();
-            if body.field.distance(&(to_object * aabb.centre())) - radius > surroundings {
+            queries += 1;
+            if body.field.distance(&(to_object * aabb.centre())) - 0.5 * aabb.diagonal() > surroundings {
                 return false;
             }
-            for index in node.items().into_iter().flatten().filter(|&i| support.is_chosen[i] > 0) {
-                if self.count < self.near.len() {
-                    self.near[self.count] = Near { index: index as u32, sleeps_until: -1.0 };
-                    self.count += 1;
-                } else {
-                    self.is_crowded = true;
-                }
+            for index in node.items().into_iter().flatten().filter(|&i| support.is_representative[i] > 0) {
+                self.near[self.count] = Near { index: index as u32, sleeps_until: f32::NEG_INFINITY };
+                self.count += 1;
             }
             true
         });
         self.valid_until = self.odometer + surroundings - reach;
+        queries
     }
 
-    /// Brings `contacts` up to date: those with a gap below `margin`, at most [`MAX_CONTACTS`] that stand for all.
+    /// Brings `contacts` up to date: those whose gap may fall below `margin` metres within `time_step` seconds, at most
+    /// [`MOST`] that stand for all.
     pub(crate) fn update(
         &mut self,
         contacts: &mut Contacts,
-        body: &Body,
-        support: &Support,
+        scene: (&Body, &Support),
         state: &State,
-        margin: f32,
-        time_step: f32,
-    ) {
+        (margin, time_step): (f32, f32),
+        meter: &mut Meter,
+    ) -> Result<(), Stop> {
+        let (body, support) = scene;
         let rotation = state.rotation.to_rotation_matrix();
         if self.odometer <= self.carried_until {
             for contact in contacts.iter_mut() {
                 contact.position = state.centre + rotation * contact.anchor;
-                // The supporter stands still: what the touched point moved along the normal opens or closes the gap.
+                // The supporter stands still: the gap opens by what the touched point moved along the normal.
                 contact.gap = contact.offset + contact.position.coords.dot(&contact.normal);
             }
-            return;
+            return Ok(());
         }
         let margin = margin + CARRY;
         self.carried_until = self.odometer + CARRY;
-        // A disc's rim comes nearer than its centre.
-        let reach = margin + support.disc;
+        let mut queries = 0;
         if self.odometer > self.valid_until {
-            self.gather(body, support, state, reach);
+            queries += self.gather(body, support, state, margin + support.disc);
         }
         contacts.clear();
-        DEBUG[0].fetch_add(1, core::sync::atomic::Ordering::Relaxed);
         for near in &mut self.near[..self.count] {
             if near.sleeps_until > self.odometer {
                 continue;
             }
-            DEBUG[1].fetch_add(1, core::sync::atomic::Ordering::Relaxed);
-            let point = support.tree.points()[near.index as usize];
-            let arm = point - state.centre;
+            let index = near.index as usize;
+            let arm = support.tree.points()[index] - state.centre;
             // What is near a pivot hardly moves, however fast the rest does.
-            let margin = margin + (state.velocity + state.spin.cross(&arm)).norm() * time_step;
-            let reach = margin + support.disc;
-            let mut at = body.centre + rotation.inverse_transform_vector(&arm);
-            let (mut gap, mut gradient) = body.field.sample(&at);
-            if gap > reach {
-                near.sleeps_until = self.odometer + gap - reach;
-                continue;
-            }
-            let normal = rotation.inverse_transform_vector(&support.normals[near.index as usize]);
+            let margin = margin + state.velocity_at(&arm).norm() * time_step;
+            let at = body.centre + rotation.inverse_transform_vector(&arm);
+            let (gap, gradient) = body.field.sample(&at);
+            queries += 1;
+            // The rim of a disc comes closer than its centre, by no more than this.
+            let normal = rotation.inverse_transform_vector(&support.normals[index]);
             let slope = gradient - normal * gradient.dot(&normal);
             let least = gap - support.disc * slope.norm();
             if least > margin {
                 near.sleeps_until = self.odometer + least - margin;
                 continue;
             }
-            if gap > -0.001 {
-                let (best, found) = nearest_on_disc(body, at, gap, gradient, &normal, support.disc);
-                (at, gap, gradient) = (best, found.0, found.1);
-            }
+            queries += 1;
+            let (at, gap, gradient) = nearest_on_disc(body, at, gap, gradient, slope, support.disc);
             if gap > margin {
                 near.sleeps_until = self.odometer + gap - margin;
                 continue;
             }
-            DEBUG[2].fetch_add(1, core::sync::atomic::Ordering::Relaxed);
             let normal = -(rotation * gradient);
             let anchor = at - body.centre;
             let position = state.centre + rotation * anchor;
             let offset = gap - position.coords.dot(&normal);
             keep(contacts, Contact { index: near.index, position, normal, gap, anchor, offset });
         }
+        meter.distance_queries(queries)
     }
 }
 
 /// How far the body may move before contacts are looked for again, metres.
 const CARRY: f32 = 0.0002;
-/// dbg
-pub static DEBUG: [core::sync::atomic::AtomicU64; 6] = [const { core::sync::atomic::AtomicU64::new(0) }; 6];
-
-/// The point of the disc around `at` that is nearest to, or deepest in, the body.
+/// The point of the disc around `at` that is nearest to, or deepest in, the body, with the gap and gradient there.
 fn nearest_on_disc(
     body: &Body,
     at: Point,
     gap: f32,
     gradient: Vector,
-    normal: &Vector,
+    slope: Vector,
     radius: f32,
-) -> (Point, (f32, Vector)) {
-    let (mut best, mut found) = (at, (gap, gradient));
-    for _ in 0..1 {
-        let slope = found.1 - normal * found.1.dot(normal);
-        let steepness = slope.norm();
-        if steepness < 0.1 {
-            break;
-        }
-        // On a round body of this radius the foot of the perpendicular is about that far.
-        const ROUNDNESS: f32 = 0.002;
-        let step = slope * (-(found.0.max(0.0) + ROUNDNESS));
-        let mut candidate = best + step;
-        let offset = candidate - at;
-        let distance = offset.norm();
-        if distance > radius {
-            candidate = at + offset * (radius / distance);
-        }
-        let sample = body.field.sample(&candidate);
-        if sample.0 >= found.0 {
-            break;
-        }
-        (best, found) = (candidate, sample);
-    }
-    (best, found)
+) -> (Point, f32, Vector) {
+    /// Bodies are about this round where they touch, metres: then the foot of the perpendicular is at the end of the step.
+    const ROUNDNESS: f32 = 0.002;
+    let step = slope * -(gap.max(0.0) + ROUNDNESS);
+    let length = step.norm();
+    let step = if length > radius { step * (radius / length) } else { step };
+    let (there, there_gradient) = body.field.sample(&(at + step));
+    if there < gap { (at + step, there, there_gradient) } else { (at, gap, gradient) }
 }
 
 /// Contacts closer to each other than this, metres, and with similar normals are one.

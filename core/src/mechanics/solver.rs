@@ -1,7 +1,7 @@
 //! Impulses between the body and the supporter in one time step: projected Gauss-Seidel on velocities, Coulomb's cone.
 
 use super::body::State;
-use super::contact::{Contact, Contacts, MAX_CONTACTS};
+use super::contact::{Contact, Contacts, MOST};
 use crate::geometry::{Vector, any_perpendicular};
 use heapless::Vec;
 use nalgebra::Matrix3;
@@ -14,7 +14,7 @@ pub(crate) struct Impulse {
     pub(crate) friction: Vector,
 }
 
-pub(crate) type Impulses = Vec<Impulse, MAX_CONTACTS>;
+pub(crate) type Impulses = Vec<Impulse, MOST>;
 
 struct Row {
     arm: Vector,
@@ -38,7 +38,7 @@ pub(crate) fn solve(
     friction: f32,
     dt: f32,
 ) -> Impulses {
-    let mut rows = Vec::<Row, MAX_CONTACTS>::new();
+    let mut rows = Vec::<Row, MOST>::new();
     for contact in contacts {
         let arm = contact.position - state.centre;
         let normal = contact.normal;
@@ -48,9 +48,8 @@ pub(crate) fn solve(
         let twist = directions.map(|d| inverse_inertia * arm.cross(&d));
         let mass = core::array::from_fn(|k| 1.0 / (1.0 + arm.cross(&directions[k]).dot(&twist[k])));
         let warm = before.iter().find(|i| i.index == contact.index);
-        let impulse = warm.map_or([0.0; 3], |i| {
-            [i.normal, i.friction.dot(&tangents[0]), i.friction.dot(&tangents[1])]
-        });
+        let impulse =
+            warm.map_or([0.0; 3], |i| [i.normal, i.friction.dot(&tangents[0]), i.friction.dot(&tangents[1])]);
         let bound = -contact.gap.max(0.0) / dt;
         for k in 0..3 {
             state.velocity += directions[k] * impulse[k];
@@ -60,9 +59,10 @@ pub(crate) fn solve(
     }
     for _ in 0..ITERATIONS {
         for row in &mut rows {
-            let velocity = state.velocity + state.spin.cross(&row.arm);
+            let velocity = state.velocity_at(&row.arm);
             // Friction first, so that the normal, which must hold, has the last word.
-            let wanted = [0, 1].map(|k| row.impulse[k + 1] - velocity.dot(&row.tangents[k]) * row.mass[k + 1]);
+            let wanted =
+                [0, 1].map(|k| row.impulse[k + 1] - velocity.dot(&row.tangents[k]) * row.mass[k + 1]);
             let most = friction * row.impulse[0];
             let length = libm::sqrtf(wanted[0] * wanted[0] + wanted[1] * wanted[1]);
             let scale = if length > most { most / length } else { 1.0 };
@@ -72,7 +72,7 @@ pub(crate) fn solve(
                 state.velocity += row.tangents[k] * change;
                 state.spin += row.twist[k + 1] * change;
             }
-            let velocity = state.velocity + state.spin.cross(&row.arm);
+            let velocity = state.velocity_at(&row.arm);
             let wanted = row.impulse[0] + (row.bound - velocity.dot(&row.normal)) * row.mass[0];
             let change = wanted.max(0.0) - row.impulse[0];
             row.impulse[0] += change;
@@ -104,7 +104,7 @@ pub(crate) fn separate(
     target: f32,
 ) -> (Vector, Vector) {
     let (mut shift, mut turn) = (Vector::zeros(), Vector::zeros());
-    let mut pushes = [0.0_f32; MAX_CONTACTS];
+    let mut pushes = [0.0_f32; MOST];
     for _ in 0..4 {
         for (contact, push) in contacts.iter().zip(&mut pushes) {
             let missing = (target - SLOP - contact.gap) * SHARE;
