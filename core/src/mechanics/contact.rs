@@ -72,7 +72,8 @@ impl<'s> Neighbourhood<'s> {
         support.tree.bvh().descend(|_, node| {
             let aabb = node.aabb();
             queries += 1;
-            if body.field.distance(&(to_object * aabb.centre())) - 0.5 * aabb.diagonal() > surroundings {
+            let (centre, limit) = (to_object * aabb.centre(), surroundings + 0.5 * aabb.diagonal());
+            if body.is_beyond(&centre, limit) || body.field.distance(&centre) > limit {
                 return false;
             }
             for index in node.items().into_iter().flatten().filter(|&i| support.is_representative[i] > 0) {
