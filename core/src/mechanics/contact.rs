@@ -44,7 +44,9 @@ pub(crate) struct Neighbourhood<'s> {
     count: usize,
     /// How far any point of the body can have moved since the start, metres.
     odometer: f32,
-    /// The odometer up to which the last contacts can be carried along.
+    /// How often the last contacts may still be carried along,
+    carries: u8,
+    /// and the odometer up to which they may.
     carried_until: f32,
     /// The odometer up to which no point outside the list can be in contact.
     valid_until: f32,
@@ -55,7 +57,7 @@ const SURROUNDINGS: f32 = 0.02;
 
 impl<'s> Neighbourhood<'s> {
     pub(crate) fn new(near: &'s mut [Near]) -> Self {
-        Self { near, count: 0, odometer: 0.0, carried_until: -1.0, valid_until: -1.0 }
+        Self { near, count: 0, odometer: 0.0, carries: 0, carried_until: -1.0, valid_until: -1.0 }
     }
 
     /// Tells that no point of the body moved farther than `distance` since the last call.
@@ -86,8 +88,8 @@ impl<'s> Neighbourhood<'s> {
         queries
     }
 
-    /// Brings `contacts` up to date: those whose gap may fall below `margin` metres within `time_step` seconds, at most
-    /// [`MOST`] that stand for all.
+    /// Brings `contacts` up to date: those whose gap may fall below `margin` metres in the steps of `time_step` seconds until
+    /// they are looked for again, at most [`MOST`] that stand for all.
     pub(crate) fn update(
         &mut self,
         contacts: &mut Contacts,
@@ -98,7 +100,8 @@ impl<'s> Neighbourhood<'s> {
     ) -> Result<(), Stop> {
         let (body, support) = scene;
         let rotation = state.rotation.to_rotation_matrix();
-        if self.odometer <= self.carried_until {
+        if self.carries > 0 && self.odometer <= self.carried_until {
+            self.carries -= 1;
             for contact in contacts.iter_mut() {
                 contact.position = state.centre + rotation * contact.anchor;
                 // The supporter stands still: the gap opens by what the touched point moved along the normal.
@@ -106,8 +109,8 @@ impl<'s> Neighbourhood<'s> {
             }
             return Ok(());
         }
-        let margin = margin + CARRY;
-        self.carried_until = self.odometer + CARRY;
+        (self.carries, self.carried_until) = (CARRIES, self.odometer + CARRY);
+        let horizon = f32::from(1 + CARRIES) * time_step;
         let mut queries = 0;
         if self.odometer > self.valid_until {
             queries += self.gather(body, support, state, margin + support.disc);
@@ -120,10 +123,16 @@ impl<'s> Neighbourhood<'s> {
             let index = near.index as usize;
             let arm = support.tree.points()[index] - state.centre;
             // What is near a pivot hardly moves, however fast the rest does.
-            let margin = margin + state.velocity_at(&arm).norm() * time_step;
+            let margin = margin + state.velocity_at(&arm).norm() * horizon;
             let at = body.centre + rotation.inverse_transform_vector(&arm);
-            let (gap, gradient) = body.field.sample(&at);
             queries += 1;
+            // The value alone is cheaper, and enough for most.
+            let least = body.field.distance(&at) - support.disc;
+            if least > margin {
+                near.sleeps_until = self.odometer + least - margin;
+                continue;
+            }
+            let (gap, gradient) = body.field.sample(&at);
             // The rim of a disc comes closer than its centre, by no more than this.
             let normal = rotation.inverse_transform_vector(&support.normals[index]);
             let slope = gradient - normal * gradient.dot(&normal);
@@ -148,8 +157,10 @@ impl<'s> Neighbourhood<'s> {
     }
 }
 
-/// How far the body may move before contacts are looked for again, metres.
-const CARRY: f32 = 0.0002;
+/// Contacts are looked for again after they were carried along for so many steps,
+const CARRIES: u8 = 2;
+/// or when any point of the body may have moved farther than this, metres.
+const CARRY: f32 = 0.003;
 /// The point of the disc around `at` that is nearest to, or deepest in, the body, with the gap and gradient there.
 fn nearest_on_disc(
     body: &Body,
