@@ -29,7 +29,9 @@ pub struct SettlingCounts {
     pub at_rest: usize,
     /// Of these, those that would not come off again.
     pub wedged: usize,
-    /// Different rests that are probable enough.
+    /// Different rests that are probable enough to be given.
+    pub probable: usize,
+    /// Those among them that need no better ones beside them.
     pub firm: usize,
 }
 
@@ -127,7 +129,8 @@ impl Settling<'_> {
         if rest.probability < self.params.min_probability || poses.iter().any(is_known) {
             return;
         }
-        self.counts.firm += 1;
+        self.counts.probable += 1;
+        self.counts.firm += usize::from(rest.probability >= probability::FIRM);
         poses.offer(pose, is_more_probable);
     }
 

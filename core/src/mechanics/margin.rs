@@ -35,7 +35,7 @@ pub struct Margin {
 
 impl Margin {
     /// Gravity is tilted up to this, radians.
-    pub const MOST_TILT: f32 = 1.05;
+    pub const MOST_TILT: f32 = 1.2;
 
     /// The least of the tilts, radians.
     pub fn least_tilt(&self) -> f32 {
