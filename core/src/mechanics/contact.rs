@@ -195,12 +195,29 @@ fn keep(contacts: &mut Contacts, contact: Contact) {
         return;
     }
     if let Err(contact) = contacts.push(contact) {
-        // Full: the one that is farthest off makes way.
-        let farthest = (0..contacts.len()).max_by(|&a, &b| contacts[a].gap.total_cmp(&contacts[b].gap));
-        if let Some(place) = farthest
-            && contact.gap < contacts[place].gap
-        {
-            contacts[place] = contact;
+        make_room(contacts, contact);
+    }
+}
+
+/// Puts a contact into a full list. Of the two that say most nearly the same, the one that is farther off makes way: where flat lies
+/// on flat the corners matter, and the deepest points, all near one corner today and another tomorrow, would rock it about.
+fn make_room(contacts: &mut Contacts, contact: Contact) {
+    // Of two at one place, one on each side of a bar, both matter.
+    let unlike =
+        |a: &Contact, b: &Contact| (a.position - b.position).norm_squared() * (2.0 - a.normal.dot(&b.normal));
+    let at = |contacts: &Contacts, i: usize| contacts.get(i).copied().unwrap_or(contact);
+    let (mut least, mut pair) = (f32::INFINITY, [0, 0]);
+    for a in 0..=contacts.len() {
+        for b in 0..a {
+            let distance = unlike(&at(contacts, a), &at(contacts, b));
+            if distance < least {
+                (least, pair) = (distance, [a, b]);
+            }
         }
+    }
+    let [a, b] = pair;
+    let goes = if at(contacts, a).gap >= at(contacts, b).gap { a } else { b };
+    if let Some(slot) = contacts.get_mut(goes) {
+        *slot = contact;
     }
 }
