@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench tables peer samples clean
+.PHONY: help setup demo test bench tables peer samples header clean
 
 help:
 	@echo "make demo     hang the sample mug on the sample hook, let go and draw it"
@@ -8,6 +8,7 @@ help:
 	@echo "make peer     the same beside another implementation: PEER=peer.py [MESHES=folder]"
 	@echo "make tables   drop 600 pairs in two engines: docs/RESULTS.md [MESHES=folder adds real ones]"
 	@echo "make samples  write samples/ anew"
+	@echo "make header   write include/hangpose.h anew from ffi/"
 	@echo "make setup    install what is missing"
 	@echo "make clean    remove what was built"
 
@@ -26,6 +27,7 @@ test: setup
 	cargo test --workspace
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
 	cargo run --release -p hangpose --example samples -- --check
+	cargo run -p hangpose-ffi --example header -- --check
 	scripts/bare-metal.sh
 
 bench: setup
@@ -45,6 +47,9 @@ peer: setup $(peer_python)
 	cargo build --release -p hangpose
 	$(peer_python) bench/peer.py --peer $(PEER) time samples/mug.obj samples/mug_tree.ply
 	$(if $(MESHES),$(peer_python) bench/peer.py --peer $(PEER) agree --meshes $(MESHES))
+
+header:
+	cargo run -p hangpose-ffi --example header
 
 samples:
 	cargo run --release -p hangpose --example samples
