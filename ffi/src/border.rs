@@ -178,8 +178,13 @@ impl Region {
     }
 }
 
-/// Says where what is written overlaps anything else.
+/// What the header calls a pointer to a detail.
+pub(crate) const DETAIL: &str = "detail";
+
+/// Says where what is written overlaps anything else. The detail comes first, so that it is known whether it may be
+/// written.
 pub(crate) fn keep_apart(regions: &[Region]) -> Result<(), Failure> {
+    debug_assert!(regions[1..].iter().all(|region| region.name != DETAIL));
     for (index, one) in regions.iter().enumerate() {
         for other in &regions[index + 1..] {
             if one.overlaps(other) && (one.is_written || other.is_written) {
@@ -206,8 +211,8 @@ pub(crate) unsafe fn report(
         return failure.status();
     }
     let result = call();
-    let is_apart = !matches!(result, Err(Failure::Overlap { .. }));
-    // SAFETY: checked above. Where it might lie in something else, it is not written.
+    let is_apart = !matches!(result, Err(Failure::Overlap { written: DETAIL, .. }));
+    // SAFETY: checked above. Where it lies in something else, it is not written.
     if is_apart && let Some(detail) = unsafe { detail.as_mut() } {
         match &result {
             Ok(status) => detail.answer(*status),
@@ -219,7 +224,7 @@ pub(crate) unsafe fn report(
 
 // SAFETY: `repr(C)` over numbers, `struct_size` first.
 unsafe impl Public for hangpose_detail {
-    const NAME: &'static str = "detail";
+    const NAME: &'static str = DETAIL;
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-use crate::border::{Public, Region, input, keep_apart, optional_input, output, report};
+use crate::border::{DETAIL, Public, Region, input, keep_apart, optional_input, output, report};
 use crate::cloud::hangpose_cloud;
 use crate::detail::hangpose_detail;
 use crate::mesh::hangpose_mesh;
@@ -75,7 +75,7 @@ pub unsafe extern "C" fn hangpose_limits_of(
 ) -> hangpose_status {
     let set = || {
         keep_apart(&[
-            Region::written("detail", detail, 1),
+            Region::written(DETAIL, detail, 1),
             Region::written("limits", limits, 1),
             Region::read("params", params, 1),
             Region::read("mesh", mesh, 1),

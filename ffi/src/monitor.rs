@@ -1,4 +1,4 @@
-use crate::border::{Public, check_public, check_size, report};
+use crate::border::{DETAIL, Public, Region, check, check_public, check_size, keep_apart, report};
 use crate::detail::hangpose_detail;
 use crate::failure::Failure;
 use crate::status::*;
@@ -43,13 +43,8 @@ pub unsafe extern "C" fn hangpose_monitor_init(
 ) -> hangpose_status {
     let init = || {
         check_size::<hangpose_monitor>(struct_size)?;
-        let argument = hangpose_monitor::NAME;
-        if monitor.is_null() {
-            return Err(Failure::Null { argument });
-        }
-        if !monitor.is_aligned() {
-            return Err(Failure::Misaligned { argument, alignment: align_of::<hangpose_monitor>() });
-        }
+        keep_apart(&[Region::written(DETAIL, detail, 1), Region::written("monitor", monitor, 1)])?;
+        check(hangpose_monitor::NAME, monitor.cast_const())?;
         // SAFETY: not null, aligned, and of the size that the caller vouches for. The words are as large and aligned
         // as a monitor, see above.
         unsafe {

@@ -1,4 +1,4 @@
-use crate::border::{Public, Region, input, keep_apart, output, place, report};
+use crate::border::{DETAIL, Public, Region, input, keep_apart, output, place, report};
 use crate::detail::hangpose_detail;
 use crate::failure::Failure;
 use crate::handle::{Handle, Model};
@@ -45,8 +45,8 @@ pub unsafe extern "C" fn hangpose_object_create(
         let mesh = unsafe { input(mesh) }?;
         let [mesh_region, vertices, triangles] = mesh.regions();
         keep_apart(&[
+            Region::written(DETAIL, detail, 1),
             Region::written("memory", memory, memory_size),
-            Region::written("detail", detail, 1),
             Region::written("object", object, 1),
             Region::written("monitor", monitor, 1),
             Region::read("params", params, 1),
@@ -132,7 +132,7 @@ pub unsafe extern "C" fn hangpose_object_get_info(
         // SAFETY: the caller vouches for the pointer.
         let object = unsafe { ObjectHandle::share(object.cast()) }?;
         let [handle, arena] = object.regions();
-        keep_apart(&[handle, arena, Region::written("info", info, 1), Region::written("detail", detail, 1)])?;
+        keep_apart(&[Region::written(DETAIL, detail, 1), Region::written("info", info, 1), handle, arena])?;
         // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
         let info = unsafe { output(info) }?;
         let object = object.model();
@@ -200,7 +200,7 @@ pub unsafe extern "C" fn hangpose_object_get_site(
         // SAFETY: the caller vouches for the pointer.
         let object = unsafe { ObjectHandle::share(object.cast()) }?;
         let [handle, arena] = object.regions();
-        keep_apart(&[handle, arena, Region::written("site", site, 1), Region::written("detail", detail, 1)])?;
+        keep_apart(&[Region::written(DETAIL, detail, 1), Region::written("site", site, 1), handle, arena])?;
         // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
         let site = unsafe { output(site) }?;
         let sites = object.model().sites();

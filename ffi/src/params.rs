@@ -1,4 +1,4 @@
-use crate::border::{Public, check, check_size, report};
+use crate::border::{DETAIL, Public, Region, check, check_size, keep_apart, report};
 use crate::detail::hangpose_detail;
 use crate::failure::Failure;
 use crate::status::*;
@@ -103,6 +103,7 @@ pub unsafe extern "C" fn hangpose_params_init(
     let init = || {
         version::check(abi_version)?;
         check_size::<hangpose_params>(struct_size)?;
+        keep_apart(&[Region::written(DETAIL, detail, 1), Region::written("params", params, 1)])?;
         check(hangpose_params::NAME, params.cast_const())?;
         let core = match profile {
             HANGPOSE_PROFILE_DEFAULT => Params::default(),

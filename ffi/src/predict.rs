@@ -1,5 +1,5 @@
 use crate::border::{
-    Public, Region, check, check_size, input, keep_apart, memory as caller_memory, output, report,
+    DETAIL, Public, Region, check, check_size, input, keep_apart, memory as caller_memory, output, report,
 };
 use crate::detail::hangpose_detail;
 use crate::failure::Failure;
@@ -82,10 +82,10 @@ pub unsafe extern "C" fn hangpose_predict(
         let ([object_handle, object_arena], [supporter_handle, supporter_arena]) =
             (object.regions(), supporter.regions());
         keep_apart(&[
+            Region::written(DETAIL, detail, 1),
             Region::written("memory", memory.cast::<u8>(), memory_size),
             Region::written("poses", poses, pose_capacity as usize),
             Region::written("prediction", prediction, 1),
-            Region::written("detail", detail, 1),
             Region::written("monitor", monitor, 1),
             Region::read("params", params, 1),
             object_handle,

@@ -1,4 +1,4 @@
-use crate::border::{Region, input, keep_apart, memory as caller_memory, report, rows_mut};
+use crate::border::{DETAIL, Region, input, keep_apart, memory as caller_memory, report, rows_mut};
 use crate::detail::hangpose_detail;
 use crate::failure::Failure;
 use crate::mesh::hangpose_mesh;
@@ -32,10 +32,10 @@ pub unsafe extern "C" fn hangpose_mesh_sample(
         let [mesh_region, vertices, triangles] = mesh.regions();
         let rows = count as usize;
         keep_apart(&[
+            Region::written(DETAIL, detail, 1),
             Region::written("memory", memory.cast::<u8>(), memory_size),
             Region::written("points", points.cast::<[f32; 3]>(), rows),
             Region::written("normals", normals.cast::<[f32; 3]>(), rows),
-            Region::written("detail", detail, 1),
             mesh_region,
             vertices,
             triangles,

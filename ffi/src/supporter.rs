@@ -1,4 +1,4 @@
-use crate::border::{Public, Region, input, keep_apart, output, place, report};
+use crate::border::{DETAIL, Public, Region, input, keep_apart, output, place, report};
 use crate::cloud::hangpose_cloud;
 use crate::detail::hangpose_detail;
 use crate::failure::Failure;
@@ -50,8 +50,8 @@ pub unsafe extern "C" fn hangpose_supporter_create(
         let cloud = unsafe { input(cloud) }?;
         let [cloud_region, points, normals, viewpoint] = cloud.regions();
         keep_apart(&[
+            Region::written(DETAIL, detail, 1),
             Region::written("memory", memory, memory_size),
-            Region::written("detail", detail, 1),
             Region::written("supporter", supporter, 1),
             Region::written("monitor", monitor, 1),
             Region::read("params", params, 1),
@@ -101,9 +101,9 @@ pub unsafe extern "C" fn hangpose_supporter_update(
         let check = |room, [handle, arena]: [Region; 2]| {
             let [cloud_region, points, normals, viewpoint] = cloud.regions();
             keep_apart(&[
+                Region::written(DETAIL, detail, 1),
                 handle,
                 arena,
-                Region::written("detail", detail, 1),
                 Region::written("monitor", monitor, 1),
                 Region::read("params", params, 1),
                 cloud_region,
@@ -179,7 +179,7 @@ pub unsafe extern "C" fn hangpose_supporter_get_info(
         // SAFETY: the caller vouches for the pointer.
         let supporter = unsafe { SupporterHandle::share(supporter.cast()) }?;
         let [handle, arena] = supporter.regions();
-        keep_apart(&[handle, arena, Region::written("info", info, 1), Region::written("detail", detail, 1)])?;
+        keep_apart(&[Region::written(DETAIL, detail, 1), Region::written("info", info, 1), handle, arena])?;
         // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
         let info = unsafe { output(info) }?;
         let supporter = supporter.model();
@@ -239,7 +239,7 @@ pub unsafe extern "C" fn hangpose_supporter_get_site(
         // SAFETY: the caller vouches for the pointer.
         let supporter = unsafe { SupporterHandle::share(supporter.cast()) }?;
         let [handle, arena] = supporter.regions();
-        keep_apart(&[handle, arena, Region::written("site", site, 1), Region::written("detail", detail, 1)])?;
+        keep_apart(&[Region::written(DETAIL, detail, 1), Region::written("site", site, 1), handle, arena])?;
         // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
         let site = unsafe { output(site) }?;
         let sites = supporter.model().sites();
