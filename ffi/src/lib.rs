@@ -1,7 +1,7 @@
 //! hangpose for C and C++: the functions and structs of `include/hangpose.h`, over [`hangpose_core`].
 //!
-//! This crate is the only one with `unsafe`. What C hands over is met here and nowhere else: [`border`] turns pointers
-//! into references or says what is wrong with them, [`handle`] keeps models in the caller's memory, and every function
+//! This crate is the only one with `unsafe`. What C hands over is met here and nowhere else: `border` turns pointers
+//! into references or says what is wrong with them, `handle` keeps models in the caller's memory, and every function
 //! is a conversion between two calls of these. Names and comments end up in the header, see `examples/header.rs`.
 #![no_std]
 // The names are those that C sees.
