@@ -4,6 +4,9 @@
 #include <hangpose.hpp>
 #include <utility>
 #include <vector>
+#if __cplusplus >= 202002L
+#include <span>
+#endif
 
 #include "shapes.h"
 
@@ -58,6 +61,11 @@ int main() {
   CHECK(found && found->status == HANGPOSE_OK && found->poses.size() == 3 && found->poses.data() == poses);
   auto nothing = hangpose::predict(moved, *peg, params, hangpose::view<hangpose::pose>());
   CHECK(!nothing);
+
+#if __cplusplus >= 202002L
+  const std::span<const hangpose::vec3> span(points);
+  CHECK(hangpose::supporter::create({span, std::span(normals)}, params));
+#endif
 
   // Updates with more points need room that was asked for.
   auto growing = hangpose::supporter::create({hangpose::view<const hangpose::vec3>(points.data(), 1000)},
