@@ -9,7 +9,7 @@
 #include <vector>
 
 #ifdef __linux__
-#include <sched.h>
+#include <unistd.h>
 #endif
 
 #include "shapes.h"
@@ -23,15 +23,15 @@ struct Shared {
   hangpose_status status = HANGPOSE_OK;
 };
 
-static void be_unimportant() {
+// A controller with a real-time kernel would give the loop a real-time priority instead.
+static void be_less_important() {
 #ifdef __linux__
-  sched_param none{};
-  sched_setscheduler(0, SCHED_IDLE, &none);  // for this thread only
+  if (nice(10) == -1) std::perror("nice");  // on Linux, of this thread only
 #endif
 }
 
 static void predictor(Shared &shared) {
-  be_unimportant();
+  be_less_important();
   const hangpose::params params;
   std::vector<hangpose::vec3> vertices(RING_VERTICES), points(PEG_POINTS), normals(PEG_POINTS);
   std::vector<hangpose::triangle> triangles(RING_TRIANGLES);
