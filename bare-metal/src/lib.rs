@@ -4,18 +4,27 @@
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
 use hangpose_core::geometry::{Cloud, Mesh};
-use hangpose_core::hanging::{HangingPose, Object, Supporter, predict};
+use hangpose_core::hanging::{HangingPose, Object, Supporter, predict, predict_bytes};
 use hangpose_core::memory::Limits;
-use hangpose_core::{Monitor, Params};
+use hangpose_core::{Candidates, Monitor, Params};
 
 /// The largest inputs that this program takes.
-const LIMITS: Limits = Limits { vertices: 1000, triangles: 2000, samples: 2000, points: 2000 };
-const PARAMS: Params = Params { samples: LIMITS.samples, ..Params::paper() };
+const LIMITS: Limits = Limits { vertices: 1000, triangles: 2000, samples: 2000, voxels: 20_000, points: 2000 };
+const PARAMS: Params = Params {
+    samples: LIMITS.samples,
+    voxels: LIMITS.voxels,
+    candidates: Candidates::Contacts,
+    settle: true,
+    settle_attempts: 32,
+    firm_enough: 1,
+    ..Params::paper()
+};
 
 /// Whether the memory below is in use.
 static IS_BUSY: AtomicBool = AtomicBool::new(false);
 static mut OBJECT: [u8; Object::bytes(&LIMITS)] = [0; Object::bytes(&LIMITS)];
 static mut SUPPORTER: [u8; Supporter::bytes(&LIMITS)] = [0; Supporter::bytes(&LIMITS)];
+static mut WORKING: [u8; predict_bytes(&LIMITS)] = [0; predict_bytes(&LIMITS)];
 
 /// Writes the position of the best pose of a mesh on a cloud to `position` and returns how many poses there are,
 /// or -1 if an input is broken or larger than this program takes.
@@ -37,17 +46,16 @@ pub unsafe extern "C" fn hangpose_demo(
         return -1;
     }
     // SAFETY: the caller vouches for the pointers, and no one else has the statics until IS_BUSY is cleared.
-    let (vertices, triangles, points, position, object_memory, supporter_memory) = unsafe {
+    let (vertices, triangles, points, position, memory) = unsafe {
         (
             core::slice::from_raw_parts(vertices, vertex_count),
             core::slice::from_raw_parts(triangles, triangle_count),
             core::slice::from_raw_parts(points, point_count),
             &mut *position,
-            &mut *&raw mut OBJECT,
-            &mut *&raw mut SUPPORTER,
+            (&mut *&raw mut OBJECT, &mut *&raw mut SUPPORTER, &mut *&raw mut WORKING),
         )
     };
-    let count = best(vertices, triangles, points, position, object_memory, supporter_memory);
+    let count = best(vertices, triangles, points, position, memory);
     IS_BUSY.store(false, Ordering::Release);
     count.map_or(-1, |count| count as i32)
 }
@@ -57,8 +65,7 @@ fn best(
     triangles: &[[u32; 3]],
     points: &[[f32; 3]],
     position: &mut [f32; 3],
-    object_memory: &mut [u8],
-    supporter_memory: &mut [u8],
+    (object_memory, supporter_memory, working): (&mut [u8], &mut [u8], &mut [u8]),
 ) -> Option<usize> {
     let monitor = Monitor::new();
     let mesh = Mesh::new(vertices, triangles).ok()?;
@@ -66,7 +73,7 @@ fn best(
     let cloud = Cloud::new(points, None).ok()?;
     let supporter = Supporter::analyze(&cloud, &PARAMS, supporter_memory, &monitor).ok()?;
     let mut poses = [HangingPose::default(); 1];
-    let prediction = predict(&object, &supporter, &PARAMS, &mut poses, &monitor).ok()?;
+    let prediction = predict(&object, &supporter, &PARAMS, &mut poses, working, &monitor).ok()?;
     if let Some(best) = prediction.poses.first() {
         *position = best.pose.translation.vector.into();
     }

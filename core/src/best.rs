@@ -11,6 +11,11 @@ impl<'a, T: Copy> Best<'a, T> {
         Self { slots, len: 0 }
     }
 
+    /// The first `len` of the slots, which are in order.
+    pub(crate) fn filled(slots: &'a mut [T], len: usize) -> Self {
+        Self { slots, len }
+    }
+
     /// Puts `item` behind those that it is not better than, unless there is no place for it.
     pub(crate) fn offer(&mut self, item: T, is_better: impl Fn(&T, &T) -> bool) {
         let place = self.slots[..self.len].partition_point(|other| !is_better(&item, other));
@@ -24,6 +29,18 @@ impl<'a, T: Copy> Best<'a, T> {
     /// The item that makes way next, if the list is full.
     pub(crate) fn next_to_go(&self) -> Option<&T> {
         if self.len == self.slots.len() { self.slots.last() } else { None }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.len
+    }
+
+    pub(crate) fn is_full(&self) -> bool {
+        self.len == self.slots.len()
+    }
+
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &T> {
+        self.slots[..self.len].iter()
     }
 
     pub(crate) fn into_slice(self) -> &'a mut [T] {

@@ -48,6 +48,7 @@
 //!     vertices: vertices.len(),
 //!     triangles: triangles.len(),
 //!     samples: params.samples,
+//!     voxels: params.voxels,
 //!     points: points.len(),
 //! };
 //! let mut memory = vec![0; Object::bytes(&limits)];
@@ -58,7 +59,8 @@
 //! let supporter = Supporter::analyze(&cloud, &params, &mut memory, &monitor)?;
 //!
 //! let mut poses = [HangingPose::default(); 10];
-//! let prediction = predict(&object, &supporter, &params, &mut poses, &monitor)?;
+//! let mut memory = vec![0; predict_bytes(&limits)];
+//! let prediction = predict(&object, &supporter, &params, &mut poses, &mut memory, &monitor)?;
 //! assert!(prediction.rejection.is_none());
 //! println!("best: {}", poses[0].pose);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -73,6 +75,7 @@ mod best;
 pub mod geometry;
 pub mod hanging;
 mod heap;
+pub mod mechanics;
 pub mod memory;
 mod monitor;
 mod params;
@@ -82,4 +85,4 @@ mod random;
 mod test_shapes;
 
 pub use monitor::{Monitor, Stop, Work};
-pub use params::{CentreOfMass, Params, ParamsError};
+pub use params::{Candidates, CentreOfMass, Params, ParamsError};

@@ -35,6 +35,8 @@ pub struct Limits {
     pub triangles: usize,
     /// Points sampled from it: [`Params::samples`](crate::Params::samples).
     pub samples: usize,
+    /// Nodes of the object's distance field: [`Params::voxels`](crate::Params::voxels).
+    pub voxels: usize,
     /// Points of the supporter's cloud.
     pub points: usize,
 }

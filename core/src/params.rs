@@ -14,6 +14,16 @@ pub enum CentreOfMass {
     Given([f32; 3]),
 }
 
+/// Where the poses come from that are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+pub enum Candidates {
+    /// Every hanging site on every support site, as the paper matches them: section II-D.
+    Sites,
+    /// Every place of the object that can lie on something on every place of the supporter that can carry something.
+    Contacts,
+}
+
 /// The constants of the method, with the paper's symbols; values of Table I unless said otherwise.
 ///
 /// Two profiles exist: [`Params::paper`] is the published method, [`Params::default`] is ours.
@@ -73,6 +83,23 @@ pub struct Params {
     pub boundary_weight: f32,
     /// `gamma_3`: weight of the contact-area cost `S_a`, eq. (11).
     pub contact_area_weight: f32,
+
+    /// Where poses come from. All above but the first four constants is for [`Candidates::Sites`].
+    pub candidates: Candidates,
+    /// Whether gravity acts before the answer is given: only what comes to rest is, and stays, is a pose.
+    pub settle: bool,
+    /// Coulomb's coefficient of friction between object and supporter.
+    pub friction: f32,
+    /// How far off the supporter the object is let go, metres, where there is room for that.
+    pub clearance: f32,
+    /// Nodes of the object's signed distance field at most: two bytes each, and as much again for where they are.
+    pub voxels: usize,
+    /// Poses that are let go at most.
+    pub settle_attempts: usize,
+    /// No more poses are let go when so many stay.
+    pub firm_enough: usize,
+    /// Poses that are less likely to hang than this are none.
+    pub min_probability: f32,
 }
 
 impl Params {
@@ -103,6 +130,14 @@ impl Params {
             collision_weight: 1.0,
             boundary_weight: 1.0,
             contact_area_weight: 1.0,
+            candidates: Candidates::Sites,
+            settle: false,
+            friction: 0.4,
+            clearance: 0.001,
+            voxels: 0,
+            settle_attempts: 0,
+            firm_enough: 0,
+            min_probability: 0.0,
         }
     }
 
@@ -110,7 +145,7 @@ impl Params {
     pub fn validate(&self) -> Result<(), ParamsError> {
         // Counts are bounded so that working memory and index types stay small; cosines may be anything that
         // still selects.
-        let ranges: [(&'static str, f32, f32, f32); 21] = [
+        let ranges: [(&'static str, f32, f32, f32); 27] = [
             ("samples", self.samples as f32, 100.0, MAX_SAMPLES as f32),
             ("object_contact_cosine", self.object_contact_cosine, 0.0, 1.0),
             ("cluster_bandwidth", self.cluster_bandwidth, 0.001, 1.0),
@@ -132,11 +167,26 @@ impl Params {
             ("collision_weight", self.collision_weight, 0.0, 1.0),
             ("boundary_weight", self.boundary_weight, 0.0, 1.0),
             ("contact_area_weight", self.contact_area_weight, 0.0, 1.0),
+            ("friction", self.friction, 0.0, 2.0),
+            ("clearance", self.clearance, 0.0, 0.01),
+            ("voxels", self.voxels as f32, 0.0, MAX_VOXELS as f32),
+            ("settle_attempts", self.settle_attempts as f32, 0.0, 10_000.0),
+            ("firm_enough", self.firm_enough as f32, 0.0, 10_000.0),
+            ("min_probability", self.min_probability, 0.0, 1.0),
         ];
         for (name, value, min, max) in ranges {
             if !(min..=max).contains(&value) {
                 return Err(ParamsError::OutOfRange { name, value, min, max });
             }
+        }
+        // Without its distances nothing can be let go, and contacts are only worth that.
+        if self.voxels == 0 && (self.settle || self.candidates == Candidates::Contacts) {
+            return Err(ParamsError::OutOfRange {
+                name: "voxels",
+                value: 0.0,
+                min: 1.0,
+                max: MAX_VOXELS as f32,
+            });
         }
         let gravity = Vector::from(self.gravity);
         if !(gravity.norm_squared().is_finite() && gravity.norm() > 1e-6) {
@@ -165,12 +215,25 @@ impl Params {
     }
 }
 
-/// Ours: the paper's method on the true centre of mass, without poses that run the supporter through the object.
+/// Ours: contact on contact about the true centre of mass, and then gravity decides.
 impl Default for Params {
     fn default() -> Self {
-        Self { centre_of_mass: CentreOfMass::Volume, max_collision: 0.01, ..Self::paper() }
+        Self {
+            centre_of_mass: CentreOfMass::Volume,
+            max_collision: 0.01,
+            candidates: Candidates::Contacts,
+            settle: true,
+            voxels: 400_000,
+            settle_attempts: 32,
+            firm_enough: 4,
+            min_probability: 0.1,
+            ..Self::paper()
+        }
     }
 }
+
+/// More nodes than this are finer than any mesh of a thing that a robot hangs.
+pub(crate) const MAX_VOXELS: usize = 100_000_000;
 
 /// More samples than this serve no object that a robot can hold.
 pub const MAX_SAMPLES: usize = 500_000;

@@ -23,7 +23,11 @@ fn best(case: &Case) -> Option<HangingPose> {
     let object = analyze_object(&mesh, &params, &mut memory, &monitor).unwrap();
     let supporter = analyze_supporter(&cloud.cloud().unwrap(), &params, &mut more_memory, &monitor).unwrap();
     let mut poses = [HangingPose::default(); 1];
-    hanging::predict(&object, &supporter, &params, &mut poses, &monitor).unwrap().poses.first().copied()
+    hangpose::predict_poses(&object, &supporter, &params, &mut poses, &monitor)
+        .unwrap()
+        .poses
+        .first()
+        .copied()
 }
 
 /// How many of the pairs hang by their best pose, once it is changed by each of `changes`.

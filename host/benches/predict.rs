@@ -1,6 +1,6 @@
 //! `cargo bench`: the time of each stage and the memory of one prediction, on the samples and one thread.
 
-use hangpose::hanging::{HangingPose, Object, Supporter, predict};
+use hangpose::hanging::{HangingPose, Object, Supporter, predict, predict_bytes};
 use hangpose::memory::Limits;
 use hangpose::{Monitor, Params, files};
 use std::path::Path;
@@ -23,19 +23,22 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 vertices: mesh.vertices().len(),
                 triangles: mesh.triangles().len(),
                 samples: params.samples,
+                voxels: params.voxels,
                 points: cloud.points().len(),
             };
-            let mut memory = (vec![0; Object::bytes(&limits)], vec![0; Supporter::bytes(&limits)]);
-            let mebibytes = (memory.0.len() + memory.1.len()) as f64 / f64::from(1 << 20);
+            let sizes = [Object::bytes(&limits), Supporter::bytes(&limits), predict_bytes(&limits)];
+            let mut memory = sizes.map(|size| vec![0; size]);
+            let mebibytes = sizes.iter().sum::<usize>() as f64 / f64::from(1 << 20);
             let mut times = [const { Vec::new() }; 4];
             for _ in 0..RUNS {
+                let [object_memory, supporter_memory, scratch] = &mut memory;
                 let start = Instant::now();
-                let object = Object::analyze(&mesh, &params, &mut memory.0, &monitor)?;
+                let object = Object::analyze(&mesh, &params, object_memory, &monitor)?;
                 let after_object = Instant::now();
-                let supporter = Supporter::analyze(&cloud, &params, &mut memory.1, &monitor)?;
+                let supporter = Supporter::analyze(&cloud, &params, supporter_memory, &monitor)?;
                 let after_supporter = Instant::now();
                 let mut poses = [HangingPose::default(); 10];
-                std::hint::black_box(predict(&object, &supporter, &params, &mut poses, &monitor)?);
+                std::hint::black_box(predict(&object, &supporter, &params, &mut poses, scratch, &monitor)?);
                 let end = Instant::now();
                 let stages = [
                     after_object - start,

@@ -2,14 +2,21 @@
 
 use crate::files::{CloudFile, MeshFile};
 use crate::geometry::{Cloud, CloudError, Mesh, MeshError};
-use crate::hanging::{AnalysisError, Object, Supporter};
+use crate::hanging::{
+    AnalysisError, HangingPose, Object, PredictError, Prediction, Supporter, predict, predict_bytes,
+};
 use crate::memory::Limits;
 use crate::perception::sampling;
 use crate::{Monitor, Params};
 
 /// The largest inputs that the command takes, so that a wrong file does not fill the computer: about 700 MB.
-pub const LIMITS: Limits =
-    Limits { vertices: 4_000_000, triangles: 2_000_000, samples: 500_000, points: 1_000_000 };
+pub const LIMITS: Limits = Limits {
+    vertices: 4_000_000,
+    triangles: 2_000_000,
+    samples: 500_000,
+    voxels: 10_000_000,
+    points: 1_000_000,
+};
 
 /// An input is larger than a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -74,6 +81,7 @@ pub fn analyze_object<'m>(
         vertices: mesh.vertices().len(),
         triangles: mesh.triangles().len(),
         samples: params.samples,
+        voxels: params.voxels,
         points: 0,
     };
     memory.resize(Object::bytes(&limits), 0);
@@ -87,9 +95,22 @@ pub fn analyze_supporter<'m>(
     memory: &'m mut Vec<u8>,
     monitor: &Monitor,
 ) -> Result<Supporter<'m>, AnalysisError> {
-    let limits = Limits { vertices: 0, triangles: 0, samples: 0, points: cloud.points().len() };
+    let limits = Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points: cloud.points().len() };
     memory.resize(Supporter::bytes(&limits), 0);
     Supporter::analyze(cloud, params, memory, monitor)
+}
+
+/// [`predict`] with working memory of its own.
+pub fn predict_poses<'p>(
+    object: &Object,
+    supporter: &Supporter,
+    params: &Params,
+    poses: &'p mut [HangingPose],
+    monitor: &Monitor,
+) -> Result<Prediction<'p>, PredictError> {
+    let points = supporter.points().points().len();
+    let limits = Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points };
+    predict(object, supporter, params, poses, &mut vec![0; predict_bytes(&limits)], monitor)
 }
 
 /// A cloud of `count` points and normals from a supporter that is given as a mesh.

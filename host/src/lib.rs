@@ -5,7 +5,7 @@
 //! that the core leaves to its caller. The command `hangpose` is made of it.
 //!
 //! ```no_run
-//! use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files, hanging};
+//! use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files, hanging, predict_poses};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let (params, monitor) = (Params::default(), Monitor::new());
@@ -14,7 +14,7 @@
 //! let object = analyze_object(&mug.mesh()?, &params, &mut memory, &monitor)?;
 //! let supporter = analyze_supporter(&hook.cloud()?, &params, &mut more_memory, &monitor)?;
 //! let mut poses = [hanging::HangingPose::default(); 10];
-//! let prediction = hanging::predict(&object, &supporter, &params, &mut poses, &monitor)?;
+//! let prediction = predict_poses(&object, &supporter, &params, &mut poses, &monitor)?;
 //! # Ok(())
 //! # }
 //! ```
@@ -23,7 +23,7 @@ mod analyze;
 pub mod files;
 pub mod parry;
 
-pub use analyze::{LIMITS, TooLarge, analyze_object, analyze_supporter, sample_supporter};
+pub use analyze::{LIMITS, TooLarge, analyze_object, analyze_supporter, predict_poses, sample_supporter};
 pub use hangpose_core::*;
 
 /// The README's Rust must compile.

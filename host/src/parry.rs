@@ -3,7 +3,7 @@
 //! Triangles need no conversion: `TriMesh::indices` is what [`Mesh::new`](hangpose_core::geometry::Mesh::new) takes.
 //!
 //! ```
-//! use hangpose::parry;
+//! use hangpose::{parry, predict_poses};
 //! use hangpose_core::{Monitor, Params, geometry::{Cloud, Mesh}, hanging::*, memory::Limits, perception::sampling};
 //! use parry3d::{math, query, shape::{Capsule, TriMesh}};
 //!
@@ -45,7 +45,7 @@
 //! let mut memory = vec![0; Supporter::bytes(&limits)];
 //! let supporter = Supporter::analyze(&Cloud::new(&points, Some(&normals))?, &params, &mut memory, &monitor)?;
 //! let mut poses = [HangingPose::default(); 10];
-//! let prediction = predict(&object, &supporter, &params, &mut poses, &monitor)?;
+//! let prediction = predict_poses(&object, &supporter, &params, &mut poses, &monitor)?;
 //!
 //! // What parry says of the best pose: the peg is in the ring's hole, which has a radius of 27 mm.
 //! let pose = parry::pose_to_parry(&prediction.poses[0].pose);

@@ -3,8 +3,8 @@
 //! A hash that changes says that the method's numbers changed, not that they are wrong. After a change that is meant,
 //! take the new hash, and see that a Cortex-M7 gives it too.
 
-use hangpose::hanging::{HangingPose, predict};
-use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files};
+use hangpose::hanging::HangingPose;
+use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files, predict_poses};
 use std::path::Path;
 
 /// FNV-1a over the bits of the ten best poses of a profile.
@@ -16,7 +16,7 @@ fn hash(object: &str, supporter: &str, params: &Params) -> u32 {
     let object = analyze_object(&mesh.mesh().unwrap(), params, &mut memory, &monitor).unwrap();
     let supporter = analyze_supporter(&cloud.cloud().unwrap(), params, &mut more_memory, &monitor).unwrap();
     let mut poses = [HangingPose::default(); 10];
-    let poses = predict(&object, &supporter, params, &mut poses, &monitor).unwrap().poses;
+    let poses = predict_poses(&object, &supporter, params, &mut poses, &monitor).unwrap().poses;
     assert_eq!(poses.len(), 10);
     let numbers = poses.iter().flat_map(|p| {
         [p.pose.translation.vector.as_slice(), p.pose.rotation.coords.as_slice(), &[p.cost.total]].concat()

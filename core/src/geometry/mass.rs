@@ -2,6 +2,7 @@
 
 use super::{Mesh, Point, triangle};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
+use nalgebra::Matrix3;
 
 /// What a mesh weighs, up to its density.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +19,9 @@ pub struct MassProperties {
     pub volume: Option<f32>,
     /// The centroid of that volume.
     pub volume_centroid: Option<Point>,
+    /// The inertia tensor of a unit mass spread evenly over the volume of a closed mesh, or the surface of another, about
+    /// its own centroid; m².
+    pub inertia: Matrix3<f32>,
 }
 
 /// A closed mesh must bound more than this fraction of the volume of its box; below, it is a folded sheet.
@@ -38,17 +42,33 @@ impl MassProperties {
         let middle = aabb.centre().cast::<f64>();
         let (mut area, mut volume) = (0.0_f64, 0.0_f64);
         let mut moment = nalgebra::Vector3::<f64>::zeros();
+        // Integrals of 1, x and x xᵀ over the surface, and of x xᵀ over the volume.
+        let (mut shell_moment, mut shell) = (nalgebra::Vector3::<f64>::zeros(), Matrix3::<f64>::zeros());
+        let mut solid = Matrix3::<f64>::zeros();
         for index in 0..mesh.triangles().len() {
             let corners = mesh.corners(index);
-            area += f64::from(triangle::scaled_normal(&corners).norm()) / 2.0;
+            let piece = f64::from(triangle::scaled_normal(&corners).norm()) / 2.0;
+            area += piece;
             let [a, b, c] = corners.map(|corner| corner.cast::<f64>() - middle);
             let part = a.dot(&b.cross(&c)) / 6.0;
             volume += part;
-            moment += (a + b + c) * (part / 4.0);
+            let sum = a + b + c;
+            moment += sum * (part / 4.0);
+            shell_moment += sum * (piece / 3.0);
+            let squares = a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose();
+            shell += squares * (piece / 12.0);
+            solid += squares * (part / 20.0);
         }
         let e = aabb.extents();
         let bounds_volume = is_closed && volume.abs() as f32 > LEAST_VOLUME * e.x * e.y * e.z;
         let centroid = (middle + moment / volume).cast::<f32>();
+        let (spread, mean) = if bounds_volume {
+            (solid / volume, moment / volume)
+        } else {
+            (shell / area, shell_moment / area)
+        };
+        let spread = spread - mean * mean.transpose();
+        let inertia = (Matrix3::identity() * spread.trace() - spread).cast::<f32>();
         Ok(Self {
             area: area as f32,
             is_closed,
@@ -56,6 +76,7 @@ impl MassProperties {
             volume: bounds_volume.then_some(volume.abs() as f32),
             // Inconsistently oriented bodies may cancel out and throw the centroid outside.
             volume_centroid: (bounds_volume && aabb.contains(&centroid)).then_some(centroid),
+            inertia,
         })
     }
 }

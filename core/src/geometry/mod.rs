@@ -3,6 +3,9 @@
 mod aabb;
 mod bvh;
 mod cloud;
+// Until an object has one.
+#[allow(dead_code)]
+mod distance_field;
 mod eigen;
 pub mod hull;
 mod linkage;
@@ -16,6 +19,7 @@ mod triangle;
 
 pub use aabb::Aabb;
 pub use cloud::{Cloud, CloudError};
+pub use distance_field::DistanceField;
 pub(crate) use eigen::least_eigenvector;
 pub(crate) use linkage::linked_cluster;
 pub use mass::MassProperties;

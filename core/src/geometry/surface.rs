@@ -70,6 +70,16 @@ impl<'m> Surface<'m> {
         Ok(Self { triangles, bvh, dipoles, orientation: if inside_out { -1.0 } else { 1.0 } })
     }
 
+    /// Corners of all triangles that have an area.
+    pub(crate) fn triangles(&self) -> &'m [[Point; 3]] {
+        self.triangles
+    }
+
+    /// -1 where the triangles' normals point into the solid, 1 otherwise.
+    pub(crate) fn orientation(&self) -> f32 {
+        self.orientation
+    }
+
     /// The box around the mesh.
     pub fn aabb(&self) -> Aabb {
         self.bvh.aabb()

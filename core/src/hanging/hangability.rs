@@ -45,6 +45,8 @@ pub struct HangabilityCounts {
     pub encircled: usize,
     /// Different ones among them, eq. (7).
     pub sites: usize,
+    /// Places of the object that are tried as contacts ([`Candidates::Contacts`](crate::Candidates::Contacts)).
+    pub contacts: usize,
 }
 
 /// Sites kept at most: those that are encircled best. No shape has so many different ones.

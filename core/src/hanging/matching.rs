@@ -1,46 +1,11 @@
 //! Which object site fits on which support site, and how: section II-D.
 
-use super::{Cost, HangingSite, Object, SupportSite, Supporter};
+use super::{Cost, HangingPose, HangingSite, Object, SiteMatch, SupportSite, Supporter};
 use crate::best::Best;
 use crate::geometry::{Point, PointTree, Pose, Surface, Vector, any_perpendicular, unit_or};
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
 use nalgebra::{Matrix3, Rotation3, Translation3, UnitQuaternion};
-
-/// A pose in which the object should hang.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HangingPose {
-    /// `T_ij`: maps object coordinates to supporter coordinates; metres.
-    pub pose: Pose,
-    /// What it costs.
-    pub cost: Cost,
-    /// Index among [`Object::sites`].
-    pub object_site: u32,
-    /// Index among [`Supporter::sites`].
-    pub support_site: u32,
-    /// Whether the object's hanging direction is laid against the supporter's instead of along it.
-    pub is_reversed: bool,
-}
-
-impl HangingPose {
-    /// The order of the ranking: by total cost, then by sites, so that it is the same however it is computed.
-    pub(super) fn is_better(&self, other: &Self) -> bool {
-        let sites = |pose: &Self| (pose.support_site, pose.object_site, pose.is_reversed);
-        self.cost.total.total_cmp(&other.cost.total).then(sites(self).cmp(&sites(other))).is_lt()
-    }
-}
-
-impl Default for HangingPose {
-    fn default() -> Self {
-        Self {
-            pose: Pose::identity(),
-            cost: Cost::default(),
-            object_site: 0,
-            support_site: 0,
-            is_reversed: false,
-        }
-    }
-}
 
 /// What was left after each step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -79,17 +44,21 @@ pub(super) fn match_sites(
             let cost = Cost::without_collision(site, most_contact_points, support, params);
             for is_reversed in [false, true] {
                 let pose = align(site, object.centre_of_mass(), support, params.up(), is_reversed);
-                let outranked = poses
-                    .next_to_go()
-                    .map_or(u32::MAX, |worst| cost.collisions_up_to(worst.cost.total, params));
+                let worst = poses.next_to_go().and_then(|worst| worst.matched);
+                let outranked =
+                    worst.map_or(u32::MAX, |worst| cost.collisions_up_to(worst.cost.total, params));
                 let most = allowed.min(outranked);
                 match count_collisions(object.surface(), supporter.points(), &pose, most, meter) {
                     Ok(Some(collision)) => {
                         counts.clear += 1;
                         let cost = cost.with_collision(collision, params);
                         let (object_site, support_site) = (i as u32, j as u32);
-                        let pose = HangingPose { pose, cost, object_site, support_site, is_reversed };
-                        poses.offer(pose, HangingPose::is_better);
+                        let matched = SiteMatch { cost, object_site, support_site, is_reversed };
+                        let is_better = |a: &HangingPose, b: &HangingPose| match (a.matched, b.matched) {
+                            (Some(a), Some(b)) => a.is_better(&b),
+                            _ => false,
+                        };
+                        poses.offer(HangingPose { pose, rest: None, matched: Some(matched) }, is_better);
                     }
                     Ok(None) => {}
                     Err(stop) => return (counts, Some(stop)),

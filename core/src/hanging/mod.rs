@@ -1,11 +1,17 @@
 //! The method, one file a section of the paper.
 
+mod candidates;
 mod cost;
 mod error;
 mod hangability;
 mod matching;
 mod object;
+mod object_contact;
+mod pose;
 mod predict;
+mod probability;
+mod settling;
+mod support_contact;
 mod supportability;
 mod supporter;
 #[cfg(test)]
@@ -14,9 +20,13 @@ mod tests;
 pub use cost::Cost;
 pub use error::AnalysisError;
 pub use hangability::{HangabilityCounts, HangingSite};
-pub use matching::{HangingPose, MatchingCounts};
+pub use matching::MatchingCounts;
 pub use object::Object;
-pub use predict::{Counts, Prediction, Rejection, Stage, predict};
+pub use object_contact::ObjectContact;
+pub use pose::{HangingPose, Rest, SiteMatch};
+pub use predict::{Counts, PredictError, Prediction, Rejection, Stage, predict, predict_bytes};
+pub use settling::SettlingCounts;
+pub use support_contact::SupportContact;
 pub use supportability::{SupportSite, SupportabilityCounts};
 pub use supporter::{NormalCounts, Supporter};
 

@@ -2,10 +2,12 @@
 
 use super::AnalysisError;
 use super::hangability::{self, Hangability, HangabilityCounts, HangingSite};
-use crate::geometry::{MassProperties, Mesh, Point, PointTree, Surface, Vector};
+use super::object_contact::{self, ObjectContact};
+use crate::geometry::{DistanceField, MassProperties, Mesh, Point, PointTree, Surface, Vector};
+use crate::mechanics::Body;
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
-use crate::params::Params;
+use crate::params::{Candidates, Params};
 use crate::perception::sampling;
 
 /// An object, analysed: shape, centre of mass and hanging sites, in object coordinates. Immutable; any number of
@@ -13,6 +15,9 @@ use crate::perception::sampling;
 #[derive(Clone, Copy)]
 pub struct Object<'m> {
     surface: Surface<'m>,
+    field: Option<DistanceField<'m>>,
+    contacts: &'m [ObjectContact],
+    reach: f32,
     mass: MassProperties,
     centre_of_mass: Point,
     sites: &'m [HangingSite],
@@ -25,10 +30,15 @@ impl<'m> Object<'m> {
     /// Bytes of memory for any object within `limits`.
     pub const fn bytes(limits: &Limits) -> usize {
         let model = Surface::bytes(limits.triangles)
+            .saturating_add(DistanceField::bytes(limits.voxels))
+            .saturating_add(array_bytes::<ObjectContact>(object_contact::MAX_CONTACTS))
             .saturating_add(array_bytes::<HangingSite>(hangability::MAX_SITES));
         let before_sampling = larger(
             MassProperties::scratch_bytes(limits.vertices, limits.triangles),
-            Surface::scratch_bytes(limits.triangles),
+            larger(
+                Surface::scratch_bytes(limits.triangles),
+                DistanceField::scratch_bytes(limits.triangles, limits.voxels),
+            ),
         );
         let samples = array_bytes::<Point>(limits.samples).saturating_mul(2);
         let after_tree =
@@ -53,6 +63,7 @@ impl<'m> Object<'m> {
             vertices: mesh.vertices().len(),
             triangles: mesh.triangles().len(),
             samples: params.samples,
+            voxels: params.voxels,
             points: 0,
         };
         let mut arena = Arena::new(memory, Self::bytes(&limits))?;
@@ -60,6 +71,12 @@ impl<'m> Object<'m> {
 
         let mass = MassProperties::of(mesh, arena.scratch())?;
         let surface = Surface::build(mesh, mass.is_inside_out, &mut arena)?;
+        meter.check().map_err(|_| AnalysisError::Cancelled)?;
+        let field = match params.voxels {
+            0 => None,
+            voxels => Some(DistanceField::build(&surface, voxels, &mut arena)?),
+        };
+        let contacts = arena.slice::<ObjectContact>(object_contact::MAX_CONTACTS)?;
         let sites = arena.slice::<HangingSite>(hangability::MAX_SITES)?;
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
 
@@ -75,13 +92,65 @@ impl<'m> Object<'m> {
         let tree = PointTree::build(points, &mut scratch)?;
         let sample_mean = mean_of(points);
         let centre_of_mass = params.resolve_centre_of_mass(sample_mean, mass.volume_centroid);
-        let search = Hangability { surface: &surface, points, normals, tree: &tree, centre_of_mass, params };
-        let (counts, stopped) = search.find(sites, &mut meter, scratch)?;
+        let mut counts = HangabilityCounts::default();
+        let (mut site_count, mut contact_count) = (0, 0);
+        let found;
+        match params.candidates {
+            Candidates::Sites => {
+                let search =
+                    Hangability { surface: &surface, points, normals, tree: &tree, centre_of_mass, params };
+                let (left, stop) = search.find(sites, &mut meter, scratch)?;
+                (counts, site_count, found) = (left, left.sites, stop.map_or(Ok(()), Err));
+            }
+            Candidates::Contacts => {
+                let search = object_contact::Search { surface: &surface, points, normals, centre_of_mass };
+                (contact_count, found) = search.find(contacts, &mut counts, &mut meter);
+            }
+        }
+        let stopped = found.err();
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
         }
-        let sites = &sites[..counts.sites];
-        Ok(Self { surface, mass, centre_of_mass, sites, counts, work: meter.work, stopped })
+        let (sites, contacts) = (&sites[..site_count], &contacts[..contact_count]);
+        let reach = points.iter().map(|p| (p - centre_of_mass).norm()).fold(0.0, f32::max);
+        Ok(Self {
+            surface,
+            field,
+            contacts,
+            reach,
+            mass,
+            centre_of_mass,
+            sites,
+            counts,
+            work: meter.work,
+            stopped,
+        })
+    }
+
+    /// The object as mechanics sees it, if it was analysed with voxels.
+    pub(super) fn body(&self) -> Option<Body<'_>> {
+        let inverse_inertia = self.mass.inertia.try_inverse().unwrap_or_else(|| {
+            // All of it on a line or in a point: as a ball of its size.
+            nalgebra::Matrix3::identity() * (2.5 / (self.reach * self.reach).max(1e-9))
+        });
+        Some(Body {
+            field: self.field.as_ref()?,
+            surface: &self.surface,
+            centre: self.centre_of_mass,
+            inverse_inertia,
+            reach: self.reach,
+            extent: self.surface.aabb().extents().max(),
+        })
+    }
+
+    /// The signed distances of the mesh on a grid, if it was analysed with [`voxels`](Params::voxels).
+    pub fn distance_field(&self) -> Option<&DistanceField<'m>> {
+        self.field.as_ref()
+    }
+
+    /// Where the object can lie on something, what catches best first: [`Candidates::Contacts`].
+    pub fn contacts(&self) -> &'m [ObjectContact] {
+        self.contacts
     }
 
     /// The mesh, for rays and distances.
@@ -99,7 +168,7 @@ impl<'m> Object<'m> {
         self.centre_of_mass
     }
 
-    /// Where the object can be hung, the best encircled site first.
+    /// Where the object can be hung, the best encircled site first: [`Candidates::Sites`].
     pub fn sites(&self) -> &'m [HangingSite] {
         self.sites
     }

@@ -1,10 +1,15 @@
 //! From two models to ranked poses, or the reason why there are none.
 
+use super::candidates::{self, Candidate};
 use super::matching::{MatchingCounts, match_sites};
+use super::settling::{Settling, SettlingCounts};
 use super::{HangabilityCounts, HangingPose, Object, SupportabilityCounts, Supporter};
+use super::{object_contact, support_contact};
 use crate::best::Best;
+use crate::mechanics::Near;
+use crate::memory::{Arena, Limits, OutOfMemory, array_bytes, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
-use crate::params::{Params, ParamsError};
+use crate::params::{Candidates, Params, ParamsError};
 
 /// What [`predict`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +46,8 @@ pub struct Counts {
     pub supportability: SupportabilityCounts,
     /// Of their matches, section II-D.
     pub matching: MatchingCounts,
+    /// Of what was let go.
+    pub settling: SettlingCounts,
 }
 
 /// The step of the method that left nothing.
@@ -59,6 +66,14 @@ pub enum Stage {
     TooThick,
     /// Every pose runs the supporter through the object.
     AllCollide,
+    /// Let go, the object turns and falls off, or most often does.
+    RotatesOff,
+    /// Let go, the object slides off or falls through, or most often does.
+    SlidesOff,
+    /// Let go, the object does not come to rest.
+    NeverRests,
+    /// The object comes to rest, but a nudge would bring it down, or there is no room to put it there.
+    TooLoose,
 }
 
 impl core::fmt::Display for Stage {
@@ -76,31 +91,128 @@ impl core::fmt::Display for Stage {
                 "every part of the supporter that faces up is too thick for the object's free spaces"
             }
             Self::AllCollide => "in every pose the supporter runs through the object",
+            Self::RotatesOff => "wherever it is let go, the object rotates off",
+            Self::SlidesOff => "wherever it is let go, the object slides off",
+            Self::NeverRests => "wherever it is let go, the object does not come to rest",
+            Self::TooLoose => "where the object comes to rest, a nudge would bring it down",
         })
     }
 }
 
-/// Matches every hanging site with every support site and writes the best poses to `poses`, best first, as many
-/// as it holds.
+/// Why nothing can be predicted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PredictError {
+    /// A constant is out of range.
+    Params(ParamsError),
+    /// The memory is too small.
+    OutOfMemory(OutOfMemory),
+    /// The params ask to let the object go, but it was analysed without [`voxels`](Params::voxels).
+    NoDistanceField,
+}
+
+impl From<ParamsError> for PredictError {
+    fn from(error: ParamsError) -> Self {
+        Self::Params(error)
+    }
+}
+
+impl From<OutOfMemory> for PredictError {
+    fn from(error: OutOfMemory) -> Self {
+        Self::OutOfMemory(error)
+    }
+}
+
+impl core::fmt::Display for PredictError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Params(error) => error.fmt(f),
+            Self::OutOfMemory(error) => error.fmt(f),
+            Self::NoDistanceField => f.write_str(
+                "the object was analysed with voxels = 0: analyse it and the supporter with the params of the prediction",
+            ),
+        }
+    }
+}
+
+impl core::error::Error for PredictError {}
+
+/// Bytes of working memory for [`predict`], for a supporter within `limits`.
+pub const fn predict_bytes(limits: &Limits) -> usize {
+    let candidates = array_bytes::<Candidate>(candidates::MAX_CANDIDATES);
+    let tried = array_bytes::<f32>(object_contact::MAX_CONTACTS)
+        .saturating_add(array_bytes::<f32>(support_contact::MAX_CONTACTS));
+    let near = array_bytes::<Near>(limits.points);
+    model_bytes(candidates.saturating_add(tried).saturating_add(near))
+}
+
+/// Finds poses in which the object hangs and writes the best to `poses`, best first, as many as it holds.
 ///
-/// Poses that would be written behind the last one are not looked at to the end: more room costs more time.
+/// With [`Candidates::Sites`] every hanging site is matched with every support site; those that would be written behind the
+/// last pose are not looked at to the end: more room costs more time. With [`Params::settle`] poses are let go, and
+/// only those that stay are given. `memory` is working memory, [`predict_bytes`] of it; its contents do not matter.
+///
+/// The object and the supporter must have been analysed with the same `params`.
 pub fn predict<'p>(
     object: &Object,
     supporter: &Supporter,
     params: &Params,
     poses: &'p mut [HangingPose],
+    memory: &mut [u8],
     monitor: &Monitor,
-) -> Result<Prediction<'p>, ParamsError> {
+) -> Result<Prediction<'p>, PredictError> {
     params.validate()?;
+    let points = supporter.points().points().len();
+    let limits = Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points };
+    let mut arena = Arena::new(memory, predict_bytes(&limits))?;
     let mut meter = Meter::new(monitor);
+    let mut counts = Counts {
+        hangability: object.counts(),
+        supportability: supporter.counts(),
+        matching: MatchingCounts::default(),
+        settling: SettlingCounts::default(),
+    };
+    let body = object.body();
+    let support = supporter.support();
+    let needs_body = params.settle || params.candidates == Candidates::Contacts;
+    if needs_body && body.is_none() {
+        return Err(PredictError::NoDistanceField);
+    }
     let mut best = Best::new(poses);
-    let (matching, stop) = match_sites(object, supporter, params, &mut best, &mut meter);
+    let mut stop = None;
+    if params.candidates == Candidates::Sites {
+        (counts.matching, stop) = match_sites(object, supporter, params, &mut best, &mut meter);
+    }
+    if let Some(body) = &body
+        && needs_body
+    {
+        let near = arena.slice::<Near>(points)?;
+        let mut settling = Settling { body, support: &support, params, near, counts: counts.settling };
+        let result = match params.candidates {
+            Candidates::Sites => {
+                let matched = best.into_slice();
+                let (left, result) = settling.sieve(matched, &mut meter);
+                best = Best::filled(matched, left);
+                result
+            }
+            Candidates::Contacts => {
+                let slots = arena.slice::<Candidate>(candidates::MAX_CANDIDATES)?;
+                let tried = [
+                    arena.slice::<f32>(object_contact::MAX_CONTACTS)?,
+                    arena.slice::<f32>(support_contact::MAX_CONTACTS)?,
+                ];
+                let places = (object.contacts(), supporter.contacts());
+                settling.search(places, slots, tried, &mut best, &mut meter)
+            }
+        };
+        stop = stop.or(result.err());
+        counts.settling = settling.counts;
+    }
     meter.progress(1.0);
-    let counts = Counts { hangability: object.counts(), supportability: supporter.counts(), matching };
     let stopped = object.stopped().or(supporter.stopped()).or(stop);
-    let rejection = if stopped.is_some() { None } else { empty_stage(&counts) };
+    let poses = best.into_slice();
+    let rejection = if stopped.is_some() || !poses.is_empty() { None } else { empty_stage(&counts, params) };
     Ok(Prediction {
-        poses: best.into_slice(),
+        poses,
         rejection: rejection.map(|stage| Rejection { stage, counts }),
         stopped,
         counts,
@@ -108,10 +220,10 @@ pub fn predict<'p>(
     })
 }
 
-/// The first step that left nothing, if there is one.
-fn empty_stage(counts: &Counts) -> Option<Stage> {
-    let Counts { hangability, supportability, matching } = counts;
-    let steps = [
+/// The first step that left nothing.
+fn empty_stage(counts: &Counts, params: &Params) -> Option<Stage> {
+    let Counts { hangability, supportability, matching, settling } = counts;
+    let by_sites = [
         (hangability.clusters, Stage::NoContactPoints),
         (hangability.with_free_space, Stage::NoFreeSpace),
         (hangability.encircled, Stage::NotEncircled),
@@ -119,5 +231,25 @@ fn empty_stage(counts: &Counts) -> Option<Stage> {
         (matching.fitting, Stage::TooThick),
         (matching.clear, Stage::AllCollide),
     ];
-    steps.into_iter().find(|(left, _)| *left == 0).map(|(_, stage)| stage)
+    let by_contacts = [
+        (hangability.contacts, Stage::NoContactPoints),
+        (supportability.contacts, Stage::NoSupport),
+        (settling.clear, Stage::AllCollide),
+    ];
+    let steps = match params.candidates {
+        Candidates::Sites => &by_sites[..],
+        Candidates::Contacts => &by_contacts[..],
+    };
+    let empty = steps.iter().find(|(left, _)| *left == 0).map(|(_, stage)| *stage);
+    empty.or_else(|| {
+        // Something was let go and nothing stayed: what befell most.
+        let fates = [
+            (settling.at_rest, Stage::TooLoose),
+            (settling.rotated_off, Stage::RotatesOff),
+            (settling.slid_off, Stage::SlidesOff),
+            (settling.moving, Stage::NeverRests),
+        ];
+        let befell_most = fates.iter().rev().max_by_key(|(count, _)| *count).filter(|(count, _)| *count > 0);
+        Some(befell_most.map_or(Stage::AllCollide, |(_, stage)| *stage))
+    })
 }

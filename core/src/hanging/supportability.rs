@@ -36,6 +36,8 @@ pub struct SupportabilityCounts {
     pub clusters: usize,
     /// Clusters at which a slice through the supporter holds together.
     pub sites: usize,
+    /// Places of the supporter that are tried as contacts ([`Candidates::Contacts`](crate::Candidates::Contacts)).
+    pub contacts: usize,
 }
 
 /// Sites kept at most: those with the smallest radius, which most objects fit on.

@@ -1,11 +1,13 @@
 //! The thing that is hung on.
 
 use super::AnalysisError;
+use super::support_contact::{self, SupportContact};
 use super::supportability::{self, SupportSite, Supportability, SupportabilityCounts};
 use crate::geometry::{Cloud, PointTree, Vector};
+use crate::mechanics::{Support, choose_representatives};
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
-use crate::params::Params;
+use crate::params::{Candidates, Params};
 use crate::perception::normals;
 
 /// Normals shorter than this are taken as not given.
@@ -18,6 +20,10 @@ const UNIT_LENGTH: f32 = 1e-3;
 #[derive(Clone, Copy)]
 pub struct Supporter<'m> {
     tree: PointTree<'m>,
+    point_normals: &'m [Vector],
+    disc: f32,
+    is_representative: &'m [u8],
+    contacts: &'m [SupportContact],
     sites: &'m [SupportSite],
     normals: NormalCounts,
     counts: SupportabilityCounts,
@@ -38,13 +44,16 @@ impl<'m> Supporter<'m> {
     /// Bytes of memory for any supporter within `limits`.
     pub const fn bytes(limits: &Limits) -> usize {
         let points = limits.points;
-        let model =
-            PointTree::bytes(points).saturating_add(array_bytes::<SupportSite>(supportability::MAX_SITES));
+        let model = PointTree::bytes(points)
+            .saturating_add(array_bytes::<SupportSite>(supportability::MAX_SITES))
+            .saturating_add(array_bytes::<SupportContact>(support_contact::MAX_CONTACTS))
+            .saturating_add(array_bytes::<Vector>(points))
+            .saturating_add(array_bytes::<u8>(points));
         let scratch = larger(
             PointTree::scratch_bytes(points),
-            array_bytes::<Vector>(points).saturating_mul(2).saturating_add(larger(
+            array_bytes::<Vector>(points).saturating_add(larger(
                 normals::scratch_bytes(points),
-                supportability::scratch_bytes(points),
+                larger(supportability::scratch_bytes(points), array_bytes::<u8>(points)),
             )),
         );
         model_bytes(model.saturating_add(scratch))
@@ -59,15 +68,17 @@ impl<'m> Supporter<'m> {
     ) -> Result<Self, AnalysisError> {
         params.validate()?;
         let points = cloud.points();
-        let limits = Limits { vertices: 0, triangles: 0, samples: 0, points: points.len() };
+        let limits = Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points: points.len() };
         let mut arena = Arena::new(memory, Self::bytes(&limits))?;
         let mut meter = Meter::new(monitor);
 
         let tree = PointTree::build(points, &mut arena)?;
         let sites = arena.slice::<SupportSite>(supportability::MAX_SITES)?;
 
+        let in_tree_order = arena.slice::<Vector>(points.len())?;
+        let is_representative = arena.slice::<u8>(points.len())?;
+        let contacts = arena.slice::<SupportContact>(support_contact::MAX_CONTACTS)?;
         let mut scratch = arena.scratch();
-        let in_tree_order = scratch.slice::<Vector>(points.len())?;
         let mut normals = NormalCounts::default();
         if let Some(given) = cloud.normals() {
             for (normal, &index) in in_tree_order.iter_mut().zip(tree.order()) {
@@ -84,16 +95,62 @@ impl<'m> Supporter<'m> {
             normals::complete(&tree, in_tree_order, viewpoint, params.up(), scratch.scratch())?;
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
 
-        let in_cloud_order = scratch.slice::<Vector>(points.len())?;
-        for (normal, &index) in in_tree_order.iter().zip(tree.order()) {
-            in_cloud_order[index as usize] = *normal;
+        let mut counts = SupportabilityCounts::default();
+        let (mut site_count, mut contact_count, mut disc) = (0, 0, 0.0);
+        let found;
+        if params.settle || params.candidates == Candidates::Contacts {
+            let covered = scratch.scratch().slice::<u8>(points.len())?;
+            disc = choose_representatives(&tree, in_tree_order, is_representative, covered);
         }
-        let search = Supportability { tree: &tree, points, normals: in_cloud_order, params };
-        let (counts, stopped) = search.find(sites, &mut meter, scratch)?;
+        match params.candidates {
+            Candidates::Sites => {
+                let in_cloud_order = scratch.slice::<Vector>(points.len())?;
+                for (normal, &index) in in_tree_order.iter().zip(tree.order()) {
+                    in_cloud_order[index as usize] = *normal;
+                }
+                let search = Supportability { tree: &tree, points, normals: in_cloud_order, params };
+                let (left, stop) = search.find(sites, &mut meter, scratch)?;
+                (counts, site_count, found) = (left, left.sites, stop.map_or(Ok(()), Err));
+            }
+            Candidates::Contacts => {
+                let search = support_contact::Search { tree: &tree, normals: in_tree_order, up: params.up() };
+                (contact_count, found) = search.find(contacts, &mut counts, &mut meter);
+            }
+        }
+        let stopped = found.err();
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
         }
-        Ok(Self { tree, sites: &sites[..counts.sites], normals, counts, work: meter.work, stopped })
+        let (sites, contacts) = (&sites[..site_count], &contacts[..contact_count]);
+        let point_normals = in_tree_order;
+        let work = meter.work;
+        Ok(Self {
+            tree,
+            point_normals,
+            disc,
+            is_representative,
+            contacts,
+            sites,
+            normals,
+            counts,
+            work,
+            stopped,
+        })
+    }
+
+    /// The supporter as mechanics sees it.
+    pub(super) fn support(&self) -> Support<'_> {
+        Support {
+            tree: &self.tree,
+            normals: self.point_normals,
+            is_representative: self.is_representative,
+            disc: self.disc,
+        }
+    }
+
+    /// Where something can lie on the supporter: [`Candidates::Contacts`].
+    pub fn contacts(&self) -> &'m [SupportContact] {
+        self.contacts
     }
 
     /// The points, for neighbour queries.
@@ -101,7 +158,7 @@ impl<'m> Supporter<'m> {
         &self.tree
     }
 
-    /// Where something can be hung, the thinnest site first.
+    /// Where something can be hung, the thinnest site first: [`Candidates::Sites`].
     pub fn sites(&self) -> &'m [SupportSite] {
         self.sites
     }

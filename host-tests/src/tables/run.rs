@@ -5,8 +5,8 @@ use super::row::{Failure, Outcome, Row};
 use crate::gallery;
 use crate::judge::{Bullet, Judge, Limits, Ode, Scene};
 use hangpose::geometry::Mesh;
-use hangpose::hanging::{HangingPose, predict};
-use hangpose::{Monitor, Params, analyze_object, analyze_supporter, sample_supporter};
+use hangpose::hanging::HangingPose;
+use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses, sample_supporter};
 use std::collections::HashSet;
 use std::io::{BufRead, Write};
 use std::path::Path;
@@ -116,7 +116,7 @@ fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row 
         analyze_supporter(&cloud, &params, &mut supporter_memory, &monitor).expect("memory is enough");
     let mut poses = [HangingPose::default(); TOP];
     let prediction =
-        predict(&object, &supporter, &params, &mut poses, &monitor).expect("the profile is valid");
+        predict_poses(&object, &supporter, &params, &mut poses, &monitor).expect("the profile is valid");
     let seconds = start.elapsed().as_secs_f64();
 
     // A pair that cannot hang is judged by whether anything is predicted at all.

@@ -6,10 +6,11 @@ use hangpose::hanging::{
     Cost, Counts, HangabilityCounts, HangingPose, HangingSite, Rejection, Stage, SupportSite,
     SupportabilityCounts,
 };
+use hangpose::mechanics::{Contact, Margin};
 use serde::Serialize;
 
 /// Raised when a reader of the last schema could misunderstand the new one.
-pub(super) const SCHEMA: u32 = 1;
+pub(super) const SCHEMA: u32 = 2;
 
 #[derive(Serialize)]
 pub(super) struct Prediction<'a> {
@@ -27,9 +28,19 @@ pub(super) struct Pose<'a> {
     pose: [f32; 16],
     position: [f32; 3],
     quaternion_xyzw: [f32; 4],
-    cost: Cost,
-    object_site: Site<'a, HangingSite>,
-    supporter_site: Site<'a, SupportSite>,
+    /// The same as `pose`.
+    release_pose: [f32; 16],
+    /// Where gravity takes it; absent, like all that follows from it, if it was not asked.
+    rest_pose: Option<[f32; 16]>,
+    sinking: Option<f32>,
+    clearance: Option<f32>,
+    probability: Option<f32>,
+    margin: Option<Margin>,
+    contacts: Option<&'a [Contact]>,
+    /// Of the paper's matching; absent where poses come from contacts.
+    cost: Option<Cost>,
+    object_site: Option<Site<'a, HangingSite>>,
+    supporter_site: Option<Site<'a, SupportSite>>,
 }
 
 /// A site with its place among the sites of the object or the supporter.
@@ -50,8 +61,9 @@ pub(super) struct Reason {
 #[derive(Serialize)]
 pub(super) struct Stats {
     pub(super) seconds: Seconds,
-    pub(super) memory_bytes: PerPart,
+    pub(super) memory_bytes: MemoryBytes,
     pub(super) sites: PerPart,
+    pub(super) contacts: PerPart,
     pub(super) counts: Counts,
 }
 
@@ -69,6 +81,13 @@ pub(super) struct Seconds {
 pub(super) struct PerPart {
     pub(super) object: usize,
     pub(super) supporter: usize,
+}
+
+#[derive(Serialize)]
+pub(super) struct MemoryBytes {
+    pub(super) object: usize,
+    pub(super) supporter: usize,
+    pub(super) prediction: usize,
 }
 
 /// What `inspect` says of an object.
@@ -109,22 +128,37 @@ pub(super) struct InspectedSupporter<'a> {
 impl<'a> Pose<'a> {
     pub(super) fn new(
         rank: usize,
-        pose: &HangingPose,
+        pose: &'a HangingPose,
         object: &'a [HangingSite],
         supporter: &'a [SupportSite],
     ) -> Self {
-        let rows = pose.pose.to_homogeneous().transpose();
-        let (i, j) = (pose.object_site as usize, pose.support_site as usize);
+        let matrix = |pose: &hangpose::geometry::Pose| {
+            let rows = pose.to_homogeneous().transpose();
+            core::array::from_fn(|k| rows.as_slice()[k])
+        };
+        let (rest, matched) = (pose.rest.as_ref(), pose.matched.as_ref());
         Self {
             rank,
-            pose: core::array::from_fn(|k| rows.as_slice()[k]),
+            pose: matrix(&pose.pose),
+            release_pose: matrix(&pose.pose),
+            rest_pose: rest.map(|rest| matrix(&rest.pose)),
+            sinking: rest.map(|rest| rest.sinking),
+            clearance: rest.map(|rest| rest.clearance),
+            probability: rest.map(|rest| rest.probability),
+            margin: rest.map(|rest| rest.margin),
+            contacts: rest.map(|rest| rest.contacts()),
             position: pose.pose.translation.vector.into(),
             quaternion_xyzw: pose.pose.rotation.coords.into(),
-            cost: pose.cost,
-            object_site: Site { index: i, site: &object[i] },
-            supporter_site: Site { index: j, site: &supporter[j] },
+            cost: matched.map(|matched| matched.cost),
+            object_site: matched.map(|matched| site(object, matched.object_site)),
+            supporter_site: matched.map(|matched| site(supporter, matched.support_site)),
         }
     }
+}
+
+/// The site with this index.
+fn site<T>(sites: &[T], index: u32) -> Site<'_, T> {
+    Site { index: index as usize, site: &sites[index as usize] }
 }
 
 /// All sites, numbered.

@@ -2,14 +2,14 @@
 
 use super::input::{self, Placement};
 use super::inspect::closedness;
-use super::json::{self, PerPart, Pose, Prediction, Reason, Seconds, Stats};
+use super::json::{self, MemoryBytes, PerPart, Pose, Prediction, Reason, Seconds, Stats};
 use super::output::Output;
 use super::terminal::{self, say};
 use super::{PredictArguments, progress};
 use anyhow::{Context, Result};
 use hangpose::files;
 use hangpose::geometry::{Aabb, Mesh, Point};
-use hangpose::hanging::{self, HangingPose, Object, Supporter, predict};
+use hangpose::hanging::{self, HangingPose, Object, Rest, SiteMatch, Supporter, predict, predict_bytes};
 use hangpose::memory::Limits;
 use hangpose::{CentreOfMass, Monitor};
 use std::path::{Path, PathBuf};
@@ -51,9 +51,15 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
         vertices: mesh.vertices().len(),
         triangles: mesh.triangles().len(),
         samples: params.samples,
+        voxels: params.voxels,
         points: cloud.points().len(),
     };
-    let memory_bytes = PerPart { object: Object::bytes(&limits), supporter: Supporter::bytes(&limits) };
+    let memory_bytes = MemoryBytes {
+        object: Object::bytes(&limits),
+        supporter: Supporter::bytes(&limits),
+        prediction: predict_bytes(&limits),
+    };
+    let prediction_memory = &mut vec![0; memory_bytes.prediction];
     let object_memory = &mut vec![0; memory_bytes.object];
     let supporter_memory = &mut vec![0; memory_bytes.supporter];
     let mut poses = vec![HangingPose::default(); arguments.top as usize];
@@ -74,7 +80,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
         };
         let (object, supporter) = ((object.0?, object.1), (supporter.0?, supporter.1));
         let (prediction, matching) =
-            timed(|| predict(&object.0, &supporter.0, params, &mut poses, monitors[2]));
+            timed(|| predict(&object.0, &supporter.0, params, &mut poses, prediction_memory, monitors[2]));
         (seconds.object, seconds.supporter, seconds.matching) = (object.1, supporter.1, matching);
         Ok((object.0, supporter.0, prediction?))
     })?;
@@ -95,6 +101,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
                 seconds,
                 memory_bytes,
                 sites: PerPart { object: object.sites().len(), supporter: supporter.sites().len() },
+                contacts: PerPart { object: object.contacts().len(), supporter: supporter.contacts().len() },
                 counts: prediction.counts,
             },
             params,
@@ -131,31 +138,58 @@ fn table(prediction: &hanging::Prediction, mesh: &Mesh, object: &Object, support
         format!("{x:.0} x {y:.0} x {z:.0} mm")
     };
     let mut text = format!(
-        "object: {} triangles, {}, {}, {} sites; supporter: {} points, {}, {} sites\n",
+        "object: {} triangles, {}, {}, {} places to hang by; supporter: {} points, {}, {} places to hang on\n",
         mesh.triangles().len(),
         closedness(object.mass()),
         size(&mesh.aabb()),
-        object.sites().len(),
+        object.sites().len() + object.contacts().len(),
         supporter.points().points().len(),
         size(&supporter.points().aabb()),
-        supporter.sites().len(),
+        supporter.sites().len() + supporter.contacts().len(),
     );
     if let Some(rejection) = &prediction.rejection {
         text += &format!("nothing hangs: {}\n", rejection.stage);
         return text;
     }
-    let point = |p: &hangpose::geometry::Point| {
+    let point = |p: &Point| {
         let [x, y, z] = [p.x, p.y, p.z].map(|x| 1000.0 * x);
         format!("{x:8.1} {y:7.1} {z:7.1}")
     };
-    text +=
-        "rank    total  collision  boundary  contact area   on the supporter, mm    with the object's, mm\n";
+    let best = prediction.poses.first();
+    if best.is_some_and(|pose| pose.matched.is_some()) {
+        text += "rank    total  collision  boundary  contact area   on the supporter, mm    with the object's, mm\n";
+    }
     for (rank, pose) in (1..).zip(prediction.poses) {
-        let hanging::Cost { collision, boundary, contact_area, total } = pose.cost;
-        let on = point(&supporter.sites()[pose.support_site as usize].position);
-        let with = point(&object.sites()[pose.object_site as usize].position);
-        text +=
-            &format!("{rank:4} {total:8.3} {collision:10} {boundary:9.3} {contact_area:13.3} {on} {with}\n");
+        if let Some(SiteMatch { cost, object_site, support_site, .. }) = &pose.matched {
+            let hanging::Cost { collision, boundary, contact_area, total } = cost;
+            let on = point(&supporter.sites()[*support_site as usize].position);
+            let with = point(&object.sites()[*object_site as usize].position);
+            text += &format!(
+                "{rank:4} {total:8.3} {collision:10} {boundary:9.3} {contact_area:13.3} {on} {with}\n"
+            );
+        }
+        if let Some(rest) = &pose.rest {
+            text += &format!("{rank:4}  {}\n", in_words(rest));
+        } else if pose.matched.is_none() {
+            text += &format!("{rank:4}  at{} mm\n", point(&pose.pose.translation.vector.into()));
+        }
     }
     text
+}
+
+/// How firmly an object hangs, for people.
+fn in_words(rest: &Rest) -> String {
+    let margin = &rest.margin;
+    let tilt = margin.least_tilt().to_degrees();
+    let or_more = if margin.least_tilt() >= hangpose::mechanics::Margin::MOST_TILT { " or more" } else { "" };
+    let at = rest.contacts().iter().max_by(|a, b| a.force.total_cmp(&b.force)).map_or(String::new(), |c| {
+        let [x, y, z] = [c.position.x, c.position.y, c.position.z].map(|x| 1000.0 * x);
+        format!(", on ({x:.0}, {y:.0}, {z:.0}) mm")
+    });
+    format!(
+        "hangs with a probability of {:.0} %: stays up to a {tilt:.0} degree tilt{or_more} or a {:.1} m/s knock; let go, it sinks {:.1} mm{at}",
+        100.0 * rest.probability,
+        margin.knock_speed,
+        1000.0 * rest.sinking,
+    )
 }

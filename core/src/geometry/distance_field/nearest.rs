@@ -1,0 +1,283 @@
+//! How far the nodes of the bricks are from the mesh, and which triangle is nearest.
+//!
+//! Every triangle is asked by the nodes close to it, so that what those get is exact. From them the nearest triangles
+//! spread to their neighbours, a layer at a time: a node asks the triangles that its neighbours found nearest. That may
+//! miss the nearest of many small triangles, by less than one of them.
+
+use super::super::{Surface, Vector};
+use super::brick::{
+    ACROSS, ALL, BESIDE, BLOCK, BRICK_NODES, COORDINATES, DIAGONAL, HIGH, LOW, Nodes, PADDED, SIDE, STEP,
+    compare, dilate, each,
+};
+use super::frame::Frame;
+use super::layout::Layout;
+use super::{Entry, raster};
+use crate::memory::{Arena, OutOfMemory, array_bytes};
+use core::ops::Range;
+
+/// Nodes are asked for by as many at once.
+const LANES: usize = 4;
+/// In the place of a triangle that is not known.
+const NONE: u32 = u32::MAX;
+/// How often neighbours are asked again at most; 6 were found to be needed.
+const REPAIRS: usize = 16;
+/// The nodes of a brick closer than this know their nearest triangle before any other asks, in voxels. More than one: what
+/// is found for other nodes may be too far, but not so that two neighbours seem to have room between them when they have
+/// none.
+const EXACT: f32 = 1.01;
+
+/// The nearest triangle of every node of every brick.
+pub(super) struct Nearest<'s> {
+    /// Distance in voxels, without a sign; its square until all are known.
+    pub(super) distances: &'s mut [[f32; PADDED]],
+    /// Which triangle.
+    pub(super) triangles: &'s mut [[u32; PADDED]],
+    /// The nodes of each brick that are known.
+    known: &'s mut [Nodes],
+    /// Those whose nearest triangle is new.
+    fresh: &'s mut [Nodes],
+}
+
+/// Bytes for `bricks`.
+pub(super) const fn bytes(bricks: usize) -> usize {
+    array_bytes::<f32>(bricks.saturating_mul(PADDED))
+        .saturating_add(array_bytes::<u32>(bricks.saturating_mul(PADDED)))
+        .saturating_add(array_bytes::<Nodes>(bricks).saturating_mul(2))
+        .saturating_add(array_bytes::<u32>(bricks))
+}
+
+impl<'s> Nearest<'s> {
+    /// Nothing known yet; and the block of each brick.
+    pub(super) fn new(
+        grid: &[u32],
+        bricks: usize,
+        scratch: &mut Arena<'s>,
+    ) -> Result<(Self, &'s [u32]), OutOfMemory> {
+        let (distances, _) = scratch.slice::<f32>(bricks * PADDED)?.as_chunks_mut();
+        let (triangles, _) = scratch.slice::<u32>(bricks * PADDED)?.as_chunks_mut();
+        let (known, fresh) = (scratch.slice::<Nodes>(bricks)?, scratch.slice::<Nodes>(bricks)?);
+        let places = scratch.slice::<u32>(bricks)?;
+        distances.as_flattened_mut().fill(f32::INFINITY);
+        triangles.as_flattened_mut().fill(NONE);
+        for (block, &entry) in grid.iter().enumerate() {
+            if let Entry::Brick(brick) = Entry::unpack(entry) {
+                places[brick] = block as u32;
+            }
+        }
+        Ok((Self { distances, triangles, known, fresh }, places))
+    }
+
+    /// Asks every triangle for the nodes within [`EXACT`] of it.
+    pub(super) fn seed(&mut self, surface: &Surface, layout: &Layout, grid: &[u32], frames: &[Frame]) {
+        for (triangle, (corners, frame)) in surface.triangles().iter().zip(frames).enumerate() {
+            let corners = layout.local(corners);
+            let min = corners[0].inf(&corners[1]).inf(&corners[2]).add_scalar(-EXACT);
+            let max = corners[0].sup(&corners[1]).sup(&corners[2]).add_scalar(EXACT);
+            raster::visit_blocks(&corners, EXACT, &layout.blocks, |place| {
+                let Entry::Brick(brick) = Entry::unpack(grid[layout.index(place)]) else { return };
+                let first = place.map(|i| (i * BLOCK) as f32);
+                // The rows of nodes in the box around the triangle, and all of each.
+                let low = [1, 2].map(|i| ((min[i] - first[i]).max(0.0) as usize).min(SIDE - 1));
+                let high = [1, 2].map(|i| ((max[i] - first[i]).max(0.0) as usize).min(SIDE - 1));
+                let (distances, triangles) = (&mut self.distances[brick], &mut self.triangles[brick]);
+                for z in low[1]..=high[1] {
+                    let from = SIDE * (low[0] + SIDE * z);
+                    let count = (SIDE * (high[0] - low[0] + 1)).next_multiple_of(LANES);
+                    // The middle of the run, and how far its ends are from it.
+                    let half = 0.5 * (high[0] - low[0]) as f32;
+                    let middle =
+                        Vector::new(first[0] + 2.0, first[1] + low[0] as f32 + half, first[2] + z as f32);
+                    if frame.height(&middle).abs() > EXACT + frame.slope(2.0, half) {
+                        continue;
+                    }
+                    ask(frame, triangle as u32, first, from..from + count, distances, triangles);
+                }
+            });
+        }
+        for (known, distances) in self.known.iter_mut().zip(self.distances.iter()) {
+            *known = compare(distances, 0, |distance, _| distance <= EXACT * EXACT);
+        }
+        self.fresh.copy_from_slice(self.known);
+    }
+
+    /// Finds a near triangle for all other nodes, and takes the roots of the distances.
+    pub(super) fn spread(
+        &mut self,
+        surface: &Surface,
+        layout: &Layout,
+        grid: &[u32],
+        places: &[u32],
+        frames: &[Frame],
+    ) {
+        loop {
+            self.share_all(layout, grid, places);
+            let mut changed = false;
+            for (brick, &block) in places.iter().enumerate() {
+                let known = self.known[brick];
+                let fresh = dilate(known) & !known & ALL;
+                for node in each(fresh) {
+                    self.ask_neighbours(brick, block, node, known, layout, frames);
+                }
+                changed |= fresh != 0;
+                self.known[brick] |= fresh;
+                self.fresh[brick] = fresh;
+            }
+            if !changed {
+                break;
+            }
+        }
+        for distance in self.distances.as_flattened_mut() {
+            *distance = libm::sqrtf(*distance);
+        }
+        // What spread the long way round is told by its neighbours, first everywhere, then where that changed anything.
+        self.fresh.fill(ALL);
+        for _ in 0..REPAIRS {
+            let mut changed = false;
+            for (brick, &block) in places.iter().enumerate() {
+                if self.fresh[brick] == 0 {
+                    continue;
+                }
+                let wrong = self.too_far(brick);
+                for node in each(wrong) {
+                    self.distances[brick][node] *= self.distances[brick][node];
+                    self.ask_neighbours(brick, block, node, ALL, layout, frames);
+                    self.distances[brick][node] = libm::sqrtf(self.distances[brick][node]);
+                }
+                self.fresh[brick] = wrong;
+                changed |= wrong != 0;
+            }
+            if !changed {
+                break;
+            }
+            self.share_all(layout, grid, places);
+        }
+        // A brick that no other leads to: far from the mesh, as only those are that the corners of a triangle were wrongly
+        // given.
+        for (distances, &block) in self.distances.iter_mut().zip(places) {
+            for (node, distance) in distances[..BRICK_NODES].iter_mut().enumerate() {
+                if distance.is_infinite() {
+                    let place = layout.place(block as usize);
+                    let local = [0, 1, 2].map(|i| (place[i] * BLOCK) as f32 + COORDINATES[i][node]);
+                    let point = layout.in_object(&local.into());
+                    let closest = surface.closest_point(&point);
+                    *distance = (layout.in_voxels(&closest) - Vector::from(local)).norm();
+                }
+            }
+        }
+    }
+
+    /// The nodes that are further from their triangle than from a neighbour and on to its triangle.
+    fn too_far(&self, brick: usize) -> Nodes {
+        let distances = &self.distances[brick];
+        let mut all = 0;
+        for axis in 0..3 {
+            let up = compare(distances, STEP[axis], |from, to| to - from > 1.001);
+            let down = compare(distances, STEP[axis], |from, to| from - to > 1.001);
+            all |= (up & !HIGH[axis]) << STEP[axis] | down & !HIGH[axis];
+        }
+        all
+    }
+
+    /// Nodes that two bricks have in common take the better of both answers.
+    fn share_all(&mut self, layout: &Layout, grid: &[u32], places: &[u32]) {
+        for axis in 0..3 {
+            for (brick, &block) in places.iter().enumerate() {
+                let Some(next) = layout.beside(layout.place(block as usize), axis, true) else { continue };
+                if let Entry::Brick(next) = Entry::unpack(grid[next]) {
+                    self.share(brick, next, axis);
+                }
+            }
+        }
+    }
+
+    /// Tries the triangles of a node's known neighbours. The node's distance is squared.
+    fn ask_neighbours(
+        &mut self,
+        brick: usize,
+        block: u32,
+        node: usize,
+        known: Nodes,
+        layout: &Layout,
+        frames: &[Frame],
+    ) {
+        let (distances, triangles) = (&self.distances[brick], &self.triangles[brick]);
+        let place = layout.place(block as usize);
+        let point = Vector::from([0, 1, 2].map(|i| (place[i] * BLOCK) as f32 + COORDINATES[i][node]));
+        let (mut best, mut least) = (triangles[node], distances[node]);
+        // Down the distances: to the lowest neighbour along an axis, and to the one across from where all three go down.
+        let mut lowest = None::<usize>;
+        let mut across = node;
+        let beside = BESIDE[node] & known;
+        for step in STEP {
+            let before = (node >= step && beside >> (node - step) & 1 == 1).then(|| node - step);
+            let after = (beside >> node >> step & 1 == 1).then_some(node + step);
+            let (end, lower) = match (before, after) {
+                (Some(a), Some(b)) if distances[b] < distances[a] => (b, across + step),
+                (Some(a), _) => (a, across - step),
+                (None, Some(b)) => (b, across + step),
+                (None, None) => continue,
+            };
+            across = lower;
+            lowest = Some(
+                lowest.map_or(end, |lowest| if distances[end] < distances[lowest] { end } else { lowest }),
+            );
+        }
+        if lowest.is_none() {
+            lowest =
+                each(DIAGONAL[node] & known).reduce(|a, b| if distances[b] < distances[a] { b } else { a });
+        }
+        let across = (known >> across & 1 == 1).then_some(across);
+        for near in [lowest, across].into_iter().flatten() {
+            let triangle = triangles[near];
+            if triangle == best || triangle == NONE {
+                continue;
+            }
+            let distance = frames[triangle as usize].distance_squared(&point);
+            if distance < least || distance == least && triangle < best {
+                (best, least) = (triangle, distance);
+            }
+        }
+        (self.distances[brick][node], self.triangles[brick][node]) = (least, best);
+    }
+
+    /// Lets a brick and the next one along `axis` agree on their common nodes.
+    fn share(&mut self, brick: usize, next: usize, axis: usize) {
+        let face = (self.fresh[brick] & HIGH[axis]) >> ACROSS[axis] | self.fresh[next] & LOW[axis];
+        for there in each(face) {
+            let here = there + ACROSS[axis];
+            let (a, b) = (self.distances[brick][here], self.distances[next][there]);
+            if a < b {
+                self.distances[next][there] = a;
+                self.triangles[next][there] = self.triangles[brick][here];
+                self.fresh[next] |= 1 << there;
+            } else if b < a {
+                self.distances[brick][here] = b;
+                self.triangles[brick][here] = self.triangles[next][there];
+                self.fresh[brick] |= 1 << here;
+            }
+        }
+        self.known[brick] |= face << ACROSS[axis];
+        self.known[next] |= face;
+    }
+}
+
+/// Asks one triangle for a run of nodes, a multiple of [`LANES`], of the brick whose first node is at `first`.
+#[inline]
+fn ask(
+    frame: &Frame,
+    triangle: u32,
+    first: [f32; 3],
+    run: Range<usize>,
+    distances: &mut [f32; PADDED],
+    triangles: &mut [u32; PADDED],
+) {
+    let [xs, ys, zs] = [0, 1, 2].map(|axis| &COORDINATES[axis][run.clone()]);
+    let nodes = distances[run.clone()].iter_mut().zip(&mut triangles[run]);
+    for (((least, best), x), (y, z)) in nodes.zip(xs).zip(ys.iter().zip(zs)) {
+        let point = Vector::new(first[0] + x, first[1] + y, first[2] + z);
+        let distance = frame.distance_squared(&point);
+        let is_less = distance < *least;
+        *least = if is_less { distance } else { *least };
+        *best = if is_less { triangle } else { *best };
+    }
+}

@@ -1,0 +1,118 @@
+//! Where the object can lie on something: points of its surface that look down when it hangs from them.
+
+use super::HangabilityCounts;
+use crate::geometry::{Point, Surface, Vector, any_perpendicular, rotate_about, unit_or};
+use crate::monitor::{Meter, Stop};
+use bytemuck::{Pod, Zeroable};
+
+/// A point of the object that can lie on a support, in object coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[repr(C)]
+pub struct ObjectContact {
+    /// On the surface, metres.
+    pub position: Point,
+    /// Unit vector out of the solid.
+    pub normal: Vector,
+    /// Unit vector along the thin bar that the object catches best under the point; its sign means nothing.
+    pub bar_direction: Vector,
+    /// How far such a bar must come down before it gets out sideways, metres; 0 if it is not caught.
+    pub capture: f32,
+    /// How far it is to the surface opposite, metres; infinite where there is none.
+    pub room: f32,
+}
+
+/// Contacts kept at most. They are samples of the surface that are apart; those that come first stay.
+pub(super) const MAX_CONTACTS: usize = 192;
+/// Contacts that look the same way are apart by this share of the object's diagonal.
+const APART: f32 = 0.02;
+/// ... and look the same way if their normals have this cosine.
+const SAME_WAY: f32 = 0.7;
+/// Least cosine between the normal and the direction to the centre of mass: eq. (3), with less asked than in the paper, because
+/// gravity has the last word.
+const LEAST_COSINE: f32 = 0.3;
+/// Directions of a bar that are tried.
+const DIRECTIONS: usize = 6;
+/// How far below the contact it is looked to the sides, metres.
+const LEVELS: [f32; 6] = [0.0015, 0.003, 0.006, 0.012, 0.024, 0.048];
+/// Rays start this far off the surface, metres, so that they do not hit where they come from.
+const LIFT_OFF: f32 = 1e-4;
+
+/// What the search looks at.
+pub(super) struct Search<'a> {
+    pub(super) surface: &'a Surface<'a>,
+    /// Samples of the surface and their normals.
+    pub(super) points: &'a [Point],
+    pub(super) normals: &'a [Vector],
+    pub(super) centre_of_mass: Point,
+}
+
+impl Search<'_> {
+    /// Fills `slots` with contacts, those that catch best first, and returns how many; when the work limit is reached, with what
+    /// was found until then.
+    pub(super) fn find(
+        &self,
+        slots: &mut [ObjectContact],
+        counts: &mut HangabilityCounts,
+        meter: &mut Meter,
+    ) -> (usize, Result<(), Stop>) {
+        let apart = APART * self.surface.aabb().diagonal();
+        let (mut count, mut result) = (0, Ok(()));
+        for (point, normal) in self.points.iter().zip(self.normals) {
+            let to_centre = self.centre_of_mass - point;
+            if to_centre.dot(normal) < LEAST_COSINE * to_centre.norm() {
+                continue;
+            }
+            counts.contact_points += 1;
+            let is_known = |other: &ObjectContact| {
+                (other.position - point).norm_squared() < apart * apart && other.normal.dot(normal) > SAME_WAY
+            };
+            if count == slots.len() || slots[..count].iter().any(is_known) {
+                continue;
+            }
+            match self.examine(*point, *normal, meter) {
+                Ok(contact) => slots[count] = contact,
+                Err(stop) => {
+                    result = Err(stop);
+                    break;
+                }
+            }
+            count += 1;
+        }
+        counts.contacts = count;
+        // Stable for equal ones: no sort without memory is, so their place in the order decides.
+        let place = |c: &ObjectContact| [c.position.x, c.position.y, c.position.z];
+        slots[..count].sort_unstable_by(|a, b| {
+            let by_place = || {
+                let (a, b) = (place(a), place(b));
+                a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
+            };
+            b.capture.total_cmp(&a.capture).then(b.room.total_cmp(&a.room)).then_with(by_place)
+        });
+        (count, result)
+    }
+
+    fn examine(&self, point: Point, normal: Vector, meter: &mut Meter) -> Result<ObjectContact, Stop> {
+        let down = unit_or(self.centre_of_mass - point, normal);
+        let start = point + normal * LIFT_OFF;
+        meter.rays(1)?;
+        let room = self.surface.closest_hit(&start, &down).unwrap_or(f32::INFINITY);
+        let reference = any_perpendicular(down);
+        let (mut bar_direction, mut capture) = (reference, -1.0);
+        for k in 0..DIRECTIONS {
+            let along = rotate_about(down, core::f32::consts::PI * k as f32 / DIRECTIONS as f32, reference);
+            let side = along.cross(&down);
+            meter.rays(2 * LEVELS.len())?;
+            let is_caught = |level: &&f32| {
+                let from = start + down * **level;
+                **level < room && self.surface.any_hit(&from, &side) && self.surface.any_hit(&from, &-side)
+            };
+            // From below, because what is not caught in a crease right under the contact may be caught deeper.
+            let caught = LEVELS.iter().rev().find(is_caught).copied().unwrap_or(0.0);
+            if caught > capture {
+                (bar_direction, capture) = (along, caught);
+            }
+        }
+        Ok(ObjectContact { position: point, normal, bar_direction, capture, room })
+    }
+}

@@ -1,0 +1,175 @@
+//! Which candidates come to rest, and how firmly.
+
+use super::candidates::{self, Candidate};
+use super::pose::Rest;
+use super::{HangingPose, ObjectContact, SupportContact, probability};
+use crate::best::Best;
+use crate::geometry::Pose;
+use crate::mechanics::{Body, Fate, Near, Settings, Support, firmness, is_off_surface, release_pose, settle};
+use crate::monitor::{Meter, Stop};
+use crate::params::Params;
+
+/// What became of the poses that were let go.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct SettlingCounts {
+    /// Poses that lay a contact of the object on one of the supporter.
+    pub candidates: usize,
+    /// Those that are clear of the supporter.
+    pub clear: usize,
+    /// Those that were let go.
+    pub released: usize,
+    /// Of these, those that rotated off,
+    pub rotated_off: usize,
+    /// slid off or fell through,
+    pub slid_off: usize,
+    /// or still moved after three seconds.
+    pub moving: usize,
+    /// Those that came to rest.
+    pub at_rest: usize,
+    /// Different rests that are probable enough.
+    pub firm: usize,
+}
+
+/// Lets poses go, one at a time.
+pub(super) struct Settling<'a> {
+    pub(super) body: &'a Body<'a>,
+    pub(super) support: &'a Support<'a>,
+    pub(super) params: &'a Params,
+    /// Working memory, an entry a point of the supporter.
+    pub(super) near: &'a mut [Near],
+    pub(super) counts: SettlingCounts,
+}
+
+/// What it takes off the promise of other candidates with the same contact that one was tried: of the object's,
+const TRIED_OBJECT: f32 = 0.5;
+/// and of the supporter's.
+const TRIED_SUPPORT: f32 = 0.3;
+/// A rest takes off this share of it.
+const REST_SHARE: f32 = 0.6;
+/// Tilts below this, radians, are not worth the time for the others.
+const WORTHLESS_TILT: f32 = 0.15;
+
+impl Settling<'_> {
+    /// Finds candidates and, if gravity is to act, lets the most promising go until enough stay; offers to `poses` what stays,
+    /// or all of them.
+    pub(super) fn search(
+        &mut self,
+        (contacts, supports): (&[ObjectContact], &[SupportContact]),
+        slots: &mut [Candidate],
+        tried: [&mut [f32]; 2],
+        poses: &mut Best<HangingPose>,
+        meter: &mut Meter,
+    ) -> Result<(), Stop> {
+        let scene = (self.body, self.support);
+        let [made, clear] = candidates::find(scene, contacts, supports, self.params.up(), slots, meter)?;
+        (self.counts.candidates, self.counts.clear) = (made, clear);
+        let slots = &mut slots[..clear];
+        let [tried_object, tried_support] = tried;
+        let attempts = if self.params.settle { self.params.settle_attempts } else { slots.len() };
+        for attempt in 0..attempts {
+            meter.progress(attempt as f32 / attempts as f32);
+            let value = |c: &Candidate| {
+                c.promise - tried_object[c.contacts[0] as usize] - tried_support[c.contacts[1] as usize]
+            };
+            let open = slots.iter_mut().filter(|candidate| candidate.is_tried == 0);
+            let Some(best) = open.max_by(|a, b| value(a).total_cmp(&value(b))) else { break };
+            best.is_tried = 1;
+            let candidate = *best;
+            let mut share = 1.0;
+            if !self.params.settle {
+                // In the order of what they promise.
+                poses.offer(HangingPose { pose: candidate.pose(), ..HangingPose::default() }, |_, _| false);
+            } else if let Some(pose) = self.release(&candidate.pose(), meter)? {
+                share = REST_SHARE;
+                self.offer(pose, poses);
+            }
+            tried_object[candidate.contacts[0] as usize] += share * TRIED_OBJECT;
+            tried_support[candidate.contacts[1] as usize] += share * TRIED_SUPPORT;
+            if if self.params.settle { self.counts.firm >= self.params.firm_enough } else { poses.is_full() }
+            {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Lets each of `poses` go, moves those that stay to the front, the most probable first, and returns how many they are.
+    pub(super) fn sieve(
+        &mut self,
+        poses: &mut [HangingPose],
+        meter: &mut Meter,
+    ) -> (usize, Result<(), Stop>) {
+        let mut left = 0;
+        for index in 0..poses.len() {
+            meter.progress(index as f32 / poses.len() as f32);
+            match self.release(&poses[index].pose, meter) {
+                Ok(Some(pose)) => {
+                    let pose = HangingPose { matched: poses[index].matched, ..pose };
+                    let mut firm = Best::filled(&mut poses[..=index], left);
+                    self.offer(pose, &mut firm);
+                    left = firm.len();
+                }
+                Ok(None) => {}
+                Err(stop) => return (left, Err(stop)),
+            }
+        }
+        (left, Ok(()))
+    }
+
+    /// Offers a pose unless it is improbable or known.
+    fn offer(&mut self, pose: HangingPose, poses: &mut Best<HangingPose>) {
+        let Some(rest) = &pose.rest else { return };
+        let is_known =
+            |other: &HangingPose| other.rest.is_some_and(|other| other.is_like(rest, &self.body.centre));
+        if rest.probability < self.params.min_probability || poses.iter().any(is_known) {
+            return;
+        }
+        self.counts.firm += 1;
+        poses.offer(pose, is_more_probable);
+    }
+
+    /// What becomes of the object at `release`; `None` if it does not stay.
+    pub(super) fn release(&mut self, release: &Pose, meter: &mut Meter) -> Result<Option<HangingPose>, Stop> {
+        let scene = (self.body, self.support);
+        // What is finer than the field's voxels shows only here.
+        if !is_off_surface(self.body, self.support, release, candidates::CLEARANCE, meter)? {
+            return Ok(None);
+        }
+        self.counts.released += 1;
+        let up = self.params.up();
+        let friction = self.params.friction;
+        let settled = settle(scene, release, &-up, Settings::damped(friction), self.near, meter)?;
+        match settled.fate {
+            Fate::Rests => self.counts.at_rest += 1,
+            Fate::RotatesOff => self.counts.rotated_off += 1,
+            Fate::SlidesOff => self.counts.slid_off += 1,
+            Fate::Moves => self.counts.moving += 1,
+        }
+        if settled.fate != Fate::Rests {
+            return Ok(None);
+        }
+        let clearance = self.params.clearance;
+        let (pose, gap) = release_pose(scene, &settled.pose, clearance, &up, self.near, meter)?;
+        if gap < LEAST_GAP || !is_off_surface(self.body, self.support, &pose, LEAST_GAP, meter)? {
+            return Ok(None);
+        }
+        let centre = &self.body.centre;
+        let sinking = up.dot(&(pose * centre - settled.pose * centre));
+        let firm = firmness(scene, &settled.pose, &-up, friction, WORTHLESS_TILT, self.near, meter)?;
+        let mut rest = Rest::new(settled.pose, gap, sinking);
+        rest.margin = firm.margin;
+        rest.set_contacts(&firm.contacts);
+        rest.probability = probability::of(&rest);
+        Ok(Some(HangingPose { pose, rest: Some(rest), matched: None }))
+    }
+}
+
+/// A release that comes closer to the supporter than this, metres, is as good as none: clouds are no more exact.
+const LEAST_GAP: f32 = 0.0001;
+
+/// The order of the ranking.
+pub(super) fn is_more_probable(a: &HangingPose, b: &HangingPose) -> bool {
+    let probability = |pose: &HangingPose| pose.rest.map_or(0.0, |rest| rest.probability);
+    probability(a) > probability(b)
+}

@@ -1,0 +1,194 @@
+//! Where the body and the supporter touch.
+
+use super::body::State;
+use super::{Body, Support};
+use crate::geometry::{Point, Vector};
+use crate::monitor::{Meter, Stop};
+use bytemuck::{Pod, Zeroable};
+use heapless::Vec;
+
+/// Contacts solved for at once, at most; a rigid body needs no more than a handful.
+pub(crate) const MOST: usize = 12;
+
+/// A place where the body is at, or close to, the supporter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contact {
+    /// Of the supporter's point, in tree order.
+    pub(crate) index: u32,
+    /// Supporter coordinates, metres.
+    pub(crate) position: Point,
+    /// Unit vector along which the supporter pushes the body.
+    pub(crate) normal: Vector,
+    /// Distance between the surfaces, negative in penetration, metres.
+    pub(crate) gap: f32,
+    /// The touched point of the body against its centre of mass, in its own coordinates.
+    anchor: Vector,
+    /// The gap less the anchor's place along the normal: what stays while the normal does.
+    offset: f32,
+}
+
+pub(crate) type Contacts = Vec<Contact, MOST>;
+
+/// A point of the supporter near the body, and how far the body may move before it can touch it.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Near {
+    index: u32,
+    /// The odometer below which it cannot be in contact.
+    sleeps_until: f32,
+}
+
+/// The points of the supporter near the body, kept between steps.
+pub(crate) struct Neighbourhood<'s> {
+    near: &'s mut [Near],
+    count: usize,
+    /// How far any point of the body can have moved since the start, metres.
+    odometer: f32,
+    /// The odometer up to which the last contacts can be carried along.
+    carried_until: f32,
+    /// The odometer up to which no point outside the list can be in contact.
+    valid_until: f32,
+}
+
+/// How far around the body points are gathered, metres.
+const SURROUNDINGS: f32 = 0.02;
+
+impl<'s> Neighbourhood<'s> {
+    pub(crate) fn new(near: &'s mut [Near]) -> Self {
+        Self { near, count: 0, odometer: 0.0, carried_until: -1.0, valid_until: -1.0 }
+    }
+
+    /// Tells that no point of the body moved farther than `distance` since the last call.
+    pub(crate) fn moved(&mut self, distance: f32) {
+        self.odometer += distance;
+    }
+
+    /// Lists the representatives around the body, so that nothing farther off is looked at for a while.
+    fn gather(&mut self, body: &Body, support: &Support, state: &State, reach: f32) -> usize {
+        let surroundings = SURROUNDINGS.max(2.0 * reach);
+        let to_object = body.pose(state).inverse();
+        let mut queries = 0;
+        self.count = 0;
+        support.tree.bvh().descend(|_, node| {
+            let aabb = node.aabb();
+            queries += 1;
+            if body.field.distance(&(to_object * aabb.centre())) - 0.5 * aabb.diagonal() > surroundings {
+                return false;
+            }
+            for index in node.items().into_iter().flatten().filter(|&i| support.is_representative[i] > 0) {
+                self.near[self.count] = Near { index: index as u32, sleeps_until: f32::NEG_INFINITY };
+                self.count += 1;
+            }
+            true
+        });
+        self.valid_until = self.odometer + surroundings - reach;
+        queries
+    }
+
+    /// Brings `contacts` up to date: those whose gap may fall below `margin` metres within `time_step` seconds, at most
+    /// [`MOST`] that stand for all.
+    pub(crate) fn update(
+        &mut self,
+        contacts: &mut Contacts,
+        scene: (&Body, &Support),
+        state: &State,
+        (margin, time_step): (f32, f32),
+        meter: &mut Meter,
+    ) -> Result<(), Stop> {
+        let (body, support) = scene;
+        let rotation = state.rotation.to_rotation_matrix();
+        if self.odometer <= self.carried_until {
+            for contact in contacts.iter_mut() {
+                contact.position = state.centre + rotation * contact.anchor;
+                // The supporter stands still: the gap opens by what the touched point moved along the normal.
+                contact.gap = contact.offset + contact.position.coords.dot(&contact.normal);
+            }
+            return Ok(());
+        }
+        let margin = margin + CARRY;
+        self.carried_until = self.odometer + CARRY;
+        let mut queries = 0;
+        if self.odometer > self.valid_until {
+            queries += self.gather(body, support, state, margin + support.disc);
+        }
+        contacts.clear();
+        for near in &mut self.near[..self.count] {
+            if near.sleeps_until > self.odometer {
+                continue;
+            }
+            let index = near.index as usize;
+            let arm = support.tree.points()[index] - state.centre;
+            // What is near a pivot hardly moves, however fast the rest does.
+            let margin = margin + state.velocity_at(&arm).norm() * time_step;
+            let at = body.centre + rotation.inverse_transform_vector(&arm);
+            let (gap, gradient) = body.field.sample(&at);
+            queries += 1;
+            // The rim of a disc comes closer than its centre, by no more than this.
+            let normal = rotation.inverse_transform_vector(&support.normals[index]);
+            let slope = gradient - normal * gradient.dot(&normal);
+            let least = gap - support.disc * slope.norm();
+            if least > margin {
+                near.sleeps_until = self.odometer + least - margin;
+                continue;
+            }
+            queries += 1;
+            let (at, gap, gradient) = nearest_on_disc(body, at, gap, gradient, slope, support.disc);
+            if gap > margin {
+                near.sleeps_until = self.odometer + gap - margin;
+                continue;
+            }
+            let normal = -(rotation * gradient);
+            let anchor = at - body.centre;
+            let position = state.centre + rotation * anchor;
+            let offset = gap - position.coords.dot(&normal);
+            keep(contacts, Contact { index: near.index, position, normal, gap, anchor, offset });
+        }
+        meter.distance_queries(queries)
+    }
+}
+
+/// How far the body may move before contacts are looked for again, metres.
+const CARRY: f32 = 0.0002;
+/// The point of the disc around `at` that is nearest to, or deepest in, the body, with the gap and gradient there.
+fn nearest_on_disc(
+    body: &Body,
+    at: Point,
+    gap: f32,
+    gradient: Vector,
+    slope: Vector,
+    radius: f32,
+) -> (Point, f32, Vector) {
+    /// Bodies are about this round where they touch, metres: then the foot of the perpendicular is at the end of the step.
+    const ROUNDNESS: f32 = 0.002;
+    let step = slope * -(gap.max(0.0) + ROUNDNESS);
+    let length = step.norm();
+    let step = if length > radius { step * (radius / length) } else { step };
+    let (there, there_gradient) = body.field.sample(&(at + step));
+    if there < gap { (at + step, there, there_gradient) } else { (at, gap, gradient) }
+}
+
+/// Contacts closer to each other than this, metres, and with similar normals are one.
+const APART: f32 = 0.003;
+
+/// Adds a contact unless a deeper one stands for it.
+fn keep(contacts: &mut Contacts, contact: Contact) {
+    let same = contacts.iter().position(|other| {
+        (other.position - contact.position).norm_squared() < APART * APART
+            && other.normal.dot(&contact.normal) > 0.9
+    });
+    if let Some(place) = same {
+        if contact.gap < contacts[place].gap {
+            contacts[place] = contact;
+        }
+        return;
+    }
+    if let Err(contact) = contacts.push(contact) {
+        // Full: the one that is farthest off makes way.
+        let farthest = (0..contacts.len()).max_by(|&a, &b| contacts[a].gap.total_cmp(&contacts[b].gap));
+        if let Some(place) = farthest
+            && contact.gap < contacts[place].gap
+        {
+            contacts[place] = contact;
+        }
+    }
+}

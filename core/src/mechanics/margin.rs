@@ -1,0 +1,171 @@
+//! How firmly a resting object stays.
+
+use super::contact::Near;
+use super::motion::{Motion, Settings, TIME_STEP};
+use super::settle::most_sinking;
+use super::{Body, GRAVITY, Support};
+use crate::geometry::{Point, Pose, Vector, any_perpendicular, rotate_about};
+use crate::monitor::{Meter, Stop};
+
+/// Directions in which gravity is tilted.
+pub const DIRECTIONS: usize = 8;
+/// Contacts that are told of, at most.
+pub const MAX_CONTACTS: usize = 8;
+
+/// By how much an object stays up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Margin {
+    /// How far gravity may tilt, radians, towards each of eight horizontal directions: the first is the supporter's x axis
+    /// (or its y axis, where gravity is along x, made perpendicular to gravity), the others follow counter-clockwise seen
+    /// from above. At most [`Margin::MOST_TILT`], where the search ends.
+    pub tilts: [f32; DIRECTIONS],
+    /// The least rise of the centre of mass, metres, over the ways of escape that were found: what an escape costs over `m g`
+    /// (escape energy: Dong and Pokorny, arXiv 2309.01224). An upper bound of the least that any escape costs, and the highest
+    /// rise seen where none was found.
+    pub escape_rise: f32,
+    /// The same over the distance from the contacts to the centre of mass; no unit.
+    pub escape_ratio: f32,
+    /// The speed of a knock that would carry the centre of mass over that rise, `sqrt(2 g h)`, m/s.
+    pub knock_speed: f32,
+    /// How far the centre of mass may be from where it was taken to be, metres, square to the line from the contacts: what turns
+    /// that line as far as the least of the tilts does.
+    pub centre_of_mass_radius: f32,
+}
+
+impl Margin {
+    /// Gravity is tilted up to this, radians.
+    pub const MOST_TILT: f32 = 1.2;
+
+    /// The least of the tilts, radians.
+    pub fn least_tilt(&self) -> f32 {
+        self.tilts.iter().copied().fold(Self::MOST_TILT, f32::min)
+    }
+}
+
+/// A place where the supporter bears the object, in supporter coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Contact {
+    /// Metres.
+    pub position: Point,
+    /// Unit vector in which the supporter pushes.
+    pub normal: Vector,
+    /// How hard it pushes along it, in multiples of the object's weight.
+    pub force: f32,
+}
+
+impl Default for Contact {
+    fn default() -> Self {
+        Self { position: Point::origin(), normal: Vector::zeros(), force: 0.0 }
+    }
+}
+
+/// The margin and what bears.
+pub(crate) struct Firmness {
+    pub(crate) margin: Margin,
+    pub(crate) contacts: heapless::Vec<Contact, MAX_CONTACTS>,
+}
+
+/// How fast gravity tilts, rad/s: slowly against how fast things fall, so that the angle at which it leaves is the angle at which
+/// it began to.
+const RATE: f32 = 2.0;
+/// Without contact for so long, seconds, it has left.
+const GONE: f32 = 0.1;
+
+/// Tilts gravity in every direction from `rest`. `least` is the tilt, radians, below which the rest of the directions do not matter
+/// any more: those that are not tried have a tilt of zero.
+pub(crate) fn firmness(
+    scene: (&Body, &Support),
+    rest: &Pose,
+    down: &Vector,
+    friction: f32,
+    least: f32,
+    near: &mut [Near],
+    meter: &mut Meter,
+) -> Result<Firmness, Stop> {
+    let body = scene.0;
+    let settings = Settings::damped(friction);
+    let start = body.at(rest);
+    let contacts = {
+        let mut motion = Motion::new(scene, start, settings, near);
+        for _ in 0..3 {
+            motion.step(&(down * GRAVITY), meter)?;
+        }
+        let mut contacts = heapless::Vec::new();
+        for (position, normal, force) in motion.bearing() {
+            // There is room for all that matter; more of a flat contact say nothing new.
+            let _ = contacts.push(Contact { position, normal, force });
+        }
+        contacts
+    };
+    let (mut weight, mut place) = (0.0, Vector::zeros());
+    for contact in &contacts {
+        weight += contact.force;
+        place += contact.position.coords * contact.force;
+    }
+    let lever = if weight > 0.0 { (start.centre.coords - place / weight).norm() } else { 0.0 };
+
+    let ahead = horizontal(down);
+    let mut margin = Margin::default();
+    let (mut escape, mut highest) = (f32::INFINITY, 0.0_f32);
+    for (k, tilt) in margin.tilts.iter_mut().enumerate() {
+        let angle = core::f32::consts::TAU * k as f32 / DIRECTIONS as f32;
+        let across = rotate_about(-down, angle, ahead);
+        let motion = Motion::new(scene, start, settings, near);
+        let (held, rise, left) = tilt_until_it_leaves(motion, body, down, &across, meter)?;
+        *tilt = held;
+        highest = highest.max(rise);
+        if left {
+            escape = escape.min(rise);
+        }
+        if held < least {
+            break;
+        }
+    }
+    margin.escape_rise = if escape.is_finite() { escape } else { highest };
+    margin.escape_ratio = if lever > 0.0 { margin.escape_rise / lever } else { 0.0 };
+    margin.knock_speed = libm::sqrtf(2.0 * GRAVITY * margin.escape_rise);
+    margin.centre_of_mass_radius = lever * libm::sinf(margin.least_tilt().min(core::f32::consts::FRAC_PI_2));
+    Ok(Firmness { margin, contacts })
+}
+
+/// The horizontal direction from which the others are counted.
+fn horizontal(down: &Vector) -> Vector {
+    let axis = if down.x.abs() < 0.9 { Vector::x() } else { Vector::y() };
+    let level = axis - down * axis.dot(down);
+    crate::geometry::unit_or(level, any_perpendicular(*down))
+}
+
+/// How far gravity tilted towards `across` before the body left, radians, how high its centre of mass rose until then, and
+/// whether it left at all.
+fn tilt_until_it_leaves(
+    mut motion: Motion,
+    body: &Body,
+    down: &Vector,
+    across: &Vector,
+    meter: &mut Meter,
+) -> Result<(f32, f32, bool), Stop> {
+    let start = motion.state.centre;
+    let steps = (Margin::MOST_TILT / (RATE * TIME_STEP)) as usize;
+    let gone = (GONE / TIME_STEP) as usize;
+    let (mut held, mut highest, mut loose) = (0.0, 0.0_f32, 0);
+    for step in 1..=steps {
+        let angle = RATE * TIME_STEP * step as f32;
+        let (sin, cos) = libm::sincosf(angle);
+        let pull = down * cos + across * sin;
+        motion.step(&(pull * GRAVITY), meter)?;
+        let moved = motion.state.centre - start;
+        loose = if motion.touches { 0 } else { loose + 1 };
+        if motion.touches {
+            held = angle;
+            highest = highest.max(-down.dot(&moved));
+        }
+        // The swing into the new direction is not a fall.
+        let swing = body.reach * (1.0 - cos);
+        if loose > gone || pull.dot(&moved) > most_sinking(body) + swing {
+            return Ok((held, highest, true));
+        }
+    }
+    Ok(if loose > 0 { (held, highest, true) } else { (Margin::MOST_TILT, highest, false) })
+}

@@ -1,0 +1,29 @@
+//! What gravity does to an object that is let go: contact, friction, rest, and how firmly it stays.
+//!
+//! One rigid body against a supporter that stands still. The body is its signed distance field, the supporter its
+//! points, each a small disc of surface; a step solves for the impulses at their contacts.
+
+mod body;
+mod clearance;
+mod contact;
+mod margin;
+mod motion;
+mod release;
+mod settle;
+mod solver;
+mod support;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use body::Body;
+pub(crate) use clearance::{is_clear, is_off_surface};
+pub(crate) use contact::Near;
+pub(crate) use margin::firmness;
+pub use margin::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
+pub(crate) use motion::Settings;
+pub(crate) use release::release_pose;
+pub(crate) use settle::{Fate, settle};
+pub(crate) use support::{Support, choose_representatives};
+
+/// Standard gravity, m/s².
+pub const GRAVITY: f32 = 9.81;

@@ -1,0 +1,72 @@
+//! What becomes of the body when it is let go.
+
+use super::contact::Near;
+use super::motion::{Motion, Settings};
+use super::{Body, GRAVITY, Support};
+use crate::geometry::{Pose, Vector};
+use crate::monitor::{Meter, Stop};
+
+/// How it ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fate {
+    /// It rests on the supporter.
+    Rests,
+    /// It sank too far and had turned: it rotated off.
+    RotatesOff,
+    /// It sank too far without turning: it slid off.
+    SlidesOff,
+    /// It still moved when time was up.
+    Moves,
+}
+
+/// Where it ended, and how.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Settled {
+    pub(crate) fate: Fate,
+    /// Object to supporter.
+    pub(crate) pose: Pose,
+}
+
+/// How far the centre of mass may sink for the object to still be said to hang: DESIGN's 6 cm, or half its extent.
+pub(super) fn most_sinking(body: &Body) -> f32 {
+    0.06_f32.max(0.5 * body.extent)
+}
+
+/// Steps until it must rest: three seconds.
+const STEPS: usize = 750;
+/// It rests when over so many steps
+const WINDOW: usize = 20;
+/// no point of it moves farther than this, metres.
+const STILL: f32 = 0.0004;
+/// What falls and has turned by more than this, radians, rotated off.
+const TURNED: f32 = 0.7;
+
+/// Lets the body go at `release`; `down` is the unit vector along which things fall.
+pub(crate) fn settle(
+    (body, support): (&Body, &Support),
+    release: &Pose,
+    down: &Vector,
+    settings: Settings,
+    near: &mut [Near],
+    meter: &mut Meter,
+) -> Result<Settled, Stop> {
+    let start = body.at(release);
+    let mut motion = Motion::new((body, support), start, settings, near);
+    let mut mark = start;
+    for step in 1..=STEPS {
+        motion.step(&(down * GRAVITY), meter)?;
+        let state = &motion.state;
+        if down.dot(&(state.centre - start.centre)) > most_sinking(body) {
+            let turned = start.rotation.angle_to(&state.rotation);
+            let fate = if turned > TURNED { Fate::RotatesOff } else { Fate::SlidesOff };
+            return Ok(Settled { fate, pose: body.pose(state) });
+        }
+        if step % WINDOW == 0 {
+            if motion.touches && body.travel(&mark, state) < STILL {
+                return Ok(Settled { fate: Fate::Rests, pose: body.pose(state) });
+            }
+            mark = *state;
+        }
+    }
+    Ok(Settled { fate: Fate::Moves, pose: body.pose(&motion.state) })
+}
