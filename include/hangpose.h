@@ -14,8 +14,9 @@
 // Threads. What a call takes as a pointer to const, any number of threads may use at once. The library has no state of
 // its own, calls with different arguments never meet, and every call may be made from any thread.
 //
-// Structs. Each begins with struct_size, which the caller sets to sizeof the struct, so that a program that was compiled
-// with another header is refused and not misread. Functions ending in _init set it themselves.
+// Structs. Each that is not a part of another begins with struct_size, which the caller sets to sizeof the struct, so that
+// a program that was compiled with another header is refused and not misread. Functions ending in _init set it
+// themselves.
 //
 // Numbers. Metres, radians, seconds; right-handed frames; gravity along -z unless the params say otherwise. A pose maps
 // object coordinates to supporter coordinates. Quaternions are x, y, z, w. "eq." and "section" are of the paper:
@@ -26,16 +27,31 @@
 
 #include <stddef.h>
 #include <stdint.h>
+
 // Bytes for static arrays: constant, and never less than the queries hangpose_object_bytes, hangpose_supporter_bytes
-// and hangpose_predict_bytes. They are a little more, since they allow for each part's worst case; the queries are exact.
-#define HANGPOSE_OBJECT_BYTES(vertices, triangles, samples)                                          \
+// and hangpose_predict_bytes. They are more, up to half of it, since they add up what is never needed at once; the queries
+// are exact.
+#define HANGPOSE_OBJECT_BYTES(vertices, triangles, samples, voxels)                                  \
   (HANGPOSE_OBJECT_BYTES_AT_LEAST + HANGPOSE_OBJECT_BYTES_EACH_VERTEX * (size_t)(vertices) +        \
    HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE * (size_t)(triangles) +                                      \
-   HANGPOSE_OBJECT_BYTES_EACH_SAMPLE * (size_t)(samples))
+   HANGPOSE_OBJECT_BYTES_EACH_SAMPLE * (size_t)(samples) +                                          \
+   HANGPOSE_OBJECT_BYTES_EACH_VOXEL * (size_t)(voxels))
 #define HANGPOSE_SUPPORTER_BYTES(points)                                                             \
   (HANGPOSE_SUPPORTER_BYTES_AT_LEAST + HANGPOSE_SUPPORTER_BYTES_EACH_POINT * (size_t)(points))
-#define HANGPOSE_PREDICT_BYTES(poses)                                                                \
-  (HANGPOSE_PREDICT_BYTES_AT_LEAST + HANGPOSE_PREDICT_BYTES_EACH_POSE * (size_t)(poses))
+#define HANGPOSE_PREDICT_BYTES(points, poses)                                                        \
+  (HANGPOSE_PREDICT_BYTES_AT_LEAST + HANGPOSE_PREDICT_BYTES_EACH_POINT * (size_t)(points) +         \
+   HANGPOSE_PREDICT_BYTES_EACH_POSE * (size_t)(poses))
+// What they are made of: the queries grow by no more than this for each.
+#define HANGPOSE_OBJECT_BYTES_AT_LEAST 29696
+#define HANGPOSE_OBJECT_BYTES_EACH_VERTEX 8
+#define HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE 180
+#define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 312
+#define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 17
+#define HANGPOSE_SUPPORTER_BYTES_AT_LEAST 17408
+#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 181
+#define HANGPOSE_PREDICT_BYTES_AT_LEAST 183296
+#define HANGPOSE_PREDICT_BYTES_EACH_POINT 8
+#define HANGPOSE_PREDICT_BYTES_EACH_POSE 376
 
 // Version of the structs and functions in this header; another one than the library's is refused at run time, by
 // hangpose_params_init and hangpose_check_abi.
@@ -50,32 +66,14 @@
 // Room for the longest message, with its NUL.
 #define HANGPOSE_MESSAGE_CHARS 256
 
-// Used by HANGPOSE_OBJECT_BYTES.
-#define HANGPOSE_OBJECT_BYTES_EACH_VERTEX 8
-
-// Used by HANGPOSE_OBJECT_BYTES.
-#define HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE 124
-
-// Used by HANGPOSE_OBJECT_BYTES.
-#define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 312
-
-// Used by HANGPOSE_OBJECT_BYTES.
-#define HANGPOSE_OBJECT_BYTES_AT_LEAST 20480
-
-// Used by HANGPOSE_SUPPORTER_BYTES.
-#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 180
-
-// Used by HANGPOSE_SUPPORTER_BYTES.
-#define HANGPOSE_SUPPORTER_BYTES_AT_LEAST 14336
-
-// Used by HANGPOSE_PREDICT_BYTES.
-#define HANGPOSE_PREDICT_BYTES_EACH_POSE 56
-
-// Used by HANGPOSE_PREDICT_BYTES.
-#define HANGPOSE_PREDICT_BYTES_AT_LEAST 16
-
 // No limit: a call takes as long as it takes.
 #define HANGPOSE_NO_WORK_LIMIT 18446744073709551615ull
+
+// Directions in which gravity is tilted.
+#define HANGPOSE_DIRECTIONS 8
+
+// Contacts that a pose tells of, at most.
+#define HANGPOSE_MAX_CONTACTS 8
 
 // An object, analysed once, at the front of the memory that it was made in. There is nothing to free; the memory must
 // stay where it is, and no one else may write to it, for as long as the object is used. Any number of threads may use
@@ -96,6 +94,9 @@ typedef uint32_t hangpose_stage;
 
 // What the object's centre of mass is taken to be, one of HANGPOSE_CENTRE_OF_MASS_*.
 typedef uint32_t hangpose_centre_of_mass;
+
+// Where the poses come from that are looked at, one of HANGPOSE_CANDIDATES_*.
+typedef uint32_t hangpose_candidates;
 
 // The constants of the method, with the paper's symbols. Set them with hangpose_params_init, and then change single
 // ones. Every call that takes them checks each against its range.
@@ -152,6 +153,24 @@ typedef struct hangpose_params {
   float boundary_weight;
   // gamma_3: weight of the contact-area cost S_a, eq. (11); 0 to 1.
   float contact_area_weight;
+  // Where poses come from, one of HANGPOSE_CANDIDATES_*. All above from cluster_bandwidth on is for
+  // HANGPOSE_CANDIDATES_SITES.
+  hangpose_candidates candidates;
+  // 1 where gravity acts before the answer is given, so that only what comes to rest, and stays, is a pose; else 0.
+  uint32_t settle;
+  // Coulomb's coefficient of friction between object and supporter; 0 to 2.
+  float friction;
+  // How far off the supporter the object is let go, metres, where there is room for that; 0 to 0.01.
+  float clearance;
+  // Nodes of the object's signed distance field at most; 0 to 100000000, at least 1 for `settle` and for
+  // HANGPOSE_CANDIDATES_CONTACTS.
+  uint32_t voxels;
+  // Poses that are let go at most; 0 to 10000.
+  uint32_t settle_attempts;
+  // No more poses are let go when so many stay; 0 to 10000.
+  uint32_t firm_enough;
+  // Poses that are less likely to hang than this are none; 0 to 1.
+  float min_probability;
 } hangpose_params;
 
 // A set of defaults, one of HANGPOSE_PROFILE_*.
@@ -218,6 +237,8 @@ typedef struct hangpose_limits {
   uint32_t triangles;
   // hangpose_params.samples.
   uint32_t samples;
+  // hangpose_params.voxels.
+  uint32_t voxels;
   // Points of the supporter's cloud.
   uint32_t points;
   // Poses asked of hangpose_predict.
@@ -240,7 +261,7 @@ typedef struct hangpose_monitor {
 typedef struct hangpose_object_info {
   // sizeof(hangpose_object_info), set by the caller.
   uint32_t struct_size;
-  // HANGPOSE_WORK_LIMIT where the search for sites ended early, HANGPOSE_OK where it did not.
+  // HANGPOSE_WORK_LIMIT where the search for sites or contacts ended early, HANGPOSE_OK where it did not.
   hangpose_status stopped;
   // 1 where the mesh is closed, so that it has a volume, else 0.
   uint32_t is_closed;
@@ -260,8 +281,10 @@ typedef struct hangpose_object_info {
   uint32_t with_free_space;
   // Free spaces that the object encircles, eq. (6).
   uint32_t encircled;
-  // Different ones among them, eq. (7): the object's hanging sites.
+  // Different ones among them, eq. (7): the object's hanging sites; 0 with HANGPOSE_CANDIDATES_CONTACTS.
   uint32_t sites;
+  // Places where the object can lie on something; 0 with HANGPOSE_CANDIDATES_SITES.
+  uint32_t contacts;
   // Rays cast.
   uint64_t rays;
   // Distance and inside-outside queries made.
@@ -290,11 +313,28 @@ typedef struct hangpose_object_site {
   float encircled_below;
 } hangpose_object_site;
 
+// A place where an object can lie on something.
+typedef struct hangpose_object_contact {
+  // sizeof(hangpose_object_contact), set by the caller.
+  uint32_t struct_size;
+  // x, y, z of a point on the surface, metres, in object coordinates.
+  float position[3];
+  // Unit vector out of the solid, in object coordinates.
+  float normal[3];
+  // Unit vector along the thin bar that the object catches best under the point, in object coordinates; its sign means
+  // nothing.
+  float bar_direction[3];
+  // How far such a bar must come down before it gets out sideways, metres; 0 if it is not caught.
+  float capture;
+  // How far it is to the surface opposite, metres; infinite where there is none.
+  float room;
+} hangpose_object_contact;
+
 // What the analysis of a supporter found.
 typedef struct hangpose_supporter_info {
   // sizeof(hangpose_supporter_info), set by the caller.
   uint32_t struct_size;
-  // HANGPOSE_WORK_LIMIT where the search for sites ended early, HANGPOSE_OK where it did not.
+  // HANGPOSE_WORK_LIMIT where the search for sites or contacts ended early, HANGPOSE_OK where it did not.
   hangpose_status stopped;
   // Points of the cloud.
   uint32_t points;
@@ -306,8 +346,11 @@ typedef struct hangpose_supporter_info {
   uint32_t contact_points;
   // Clusters of them.
   uint32_t clusters;
-  // Clusters at which a slice through the supporter holds together: the support sites.
+  // Clusters at which a slice through the supporter holds together: the support sites; 0 with
+  // HANGPOSE_CANDIDATES_CONTACTS.
   uint32_t sites;
+  // Places where something can lie on the supporter; 0 with HANGPOSE_CANDIDATES_SITES.
+  uint32_t contacts;
   // Rays cast.
   uint64_t rays;
   // Distance and inside-outside queries made.
@@ -332,27 +375,90 @@ typedef struct hangpose_supporter_site {
   float boundary_distances[2];
 } hangpose_supporter_site;
 
-// A pose in which the object should hang, and what it costs; less is better.
+// A place where something can lie on a supporter.
+typedef struct hangpose_supporter_contact {
+  // sizeof(hangpose_supporter_contact), set by the caller.
+  uint32_t struct_size;
+  // x, y, z of a point of the supporter, metres, in supporter coordinates.
+  float position[3];
+  // Unit vector out of the solid, in supporter coordinates.
+  float normal[3];
+  // Unit vector along which the supporter stretches around the point, in supporter coordinates; its sign means
+  // nothing.
+  float bar_direction[3];
+} hangpose_supporter_contact;
+
+// By how much an object stays up. A part of hangpose_pose.
+typedef struct hangpose_margin {
+  // How far gravity may tilt, radians, towards each of eight horizontal directions: the first is the supporter's x axis
+  // (or its y axis, where gravity is along x, made perpendicular to gravity), the others follow counter-clockwise seen
+  // from above.
+  float tilts[HANGPOSE_DIRECTIONS];
+  // The least of the tilts, radians.
+  float least_tilt;
+  // The least rise of the centre of mass, metres, over the ways of escape that were found, and the highest rise seen
+  // where none was found.
+  float escape_rise;
+  // The same over the distance from the contacts to the centre of mass; no unit.
+  float escape_ratio;
+  // The speed of a knock that would carry the centre of mass over that rise, m/s.
+  float knock_speed;
+  // How far the centre of mass may be from where it was taken to be, metres.
+  float centre_of_mass_radius;
+} hangpose_margin;
+
+// A place where the supporter bears the object, in supporter coordinates. A part of hangpose_pose.
+typedef struct hangpose_contact {
+  // x, y, z, metres.
+  float position[3];
+  // Unit vector in which the supporter pushes.
+  float normal[3];
+  // How hard it pushes along it, in multiples of the object's weight.
+  float force;
+} hangpose_contact;
+
+// A pose in which the object hangs: where to let it go, what gravity then makes of it, and which sites it joins.
 typedef struct hangpose_pose {
   // sizeof(hangpose_pose), set by the library.
   uint32_t struct_size;
-  // Index of the hanging site, for hangpose_object_site.
-  uint32_t object_site;
-  // Index of the support site, for hangpose_supporter_site.
-  uint32_t support_site;
-  // 1 where the object's hanging direction is laid against the supporter's, 0 where it is laid along it.
-  uint32_t is_reversed;
-  // x, y, z of the object's origin, metres, in supporter coordinates.
+  // Where to let the object go: x, y, z of its origin, metres, in supporter coordinates.
   float position[3];
   // x, y, z, w of the unit quaternion that turns object coordinates into supporter coordinates.
   float quaternion[4];
+  // 1 with hangpose_params.settle; else 0, and all from here to `contacts` is NaN or 0.
+  uint32_t has_rest;
+  // The probability that it hangs and stays.
+  float probability;
+  // Where the object comes to rest: x, y, z of its origin, metres, in supporter coordinates.
+  float rest_position[3];
+  // x, y, z, w of the unit quaternion that turns object coordinates into supporter coordinates there.
+  float rest_quaternion[4];
+  // How far the centre of mass sinks from the release to there, metres.
+  float sinking;
+  // How far the object is off the supporter where it is let go, metres: hangpose_params.clearance, or less where there
+  // is no room.
+  float clearance;
+  // By how much it stays.
+  struct hangpose_margin margin;
+  // How many of the contacts there are; the others are 0.
+  uint32_t contact_count;
+  // Where the supporter bears the object at rest.
+  struct hangpose_contact contacts[HANGPOSE_MAX_CONTACTS];
+  // 1 with HANGPOSE_CANDIDATES_SITES; else 0, and all from here on is HANGPOSE_NO_INDEX, NaN or 0.
+  uint32_t is_matched;
+  // Index of the hanging site, for hangpose_object_get_site.
+  uint32_t object_site;
+  // Index of the support site, for hangpose_supporter_get_site.
+  uint32_t support_site;
+  // 1 where the object's hanging direction is laid against the supporter's, 0 where it is laid along it.
+  uint32_t is_reversed;
   // S_c: points of the supporter inside the object, eq. (8).
   uint32_t collision;
   // S_b: how far the hanging position is from the middle of the supporter, from 0.5 to 1, eq. (9).
   float boundary;
   // S_a: how small the contact area is against the object's largest, from 0 to 1, eq. (10).
   float contact_area;
-  // S_total: the weighted sum of the three, eq. (11).
+  // S_total: the weighted sum of the three, eq. (11); less is better.
   float total;
 } hangpose_pose;
 
@@ -367,13 +473,29 @@ typedef struct hangpose_prediction {
   // HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT where this call or the analysis of its models ended early, or
   // HANGPOSE_OK.
   hangpose_status stopped;
-  // Pairs of an object site and a support site.
-  uint32_t pairs;
+  // With HANGPOSE_CANDIDATES_SITES, pairs of an object site and a support site.
+  uint32_t matching_pairs;
   // Pairs where the support fits into the free space.
-  uint32_t fitting;
+  uint32_t matching_fitting;
   // Poses, two a fitting pair, found with no more collisions than allowed; those that others were sure to outrank are
   // not counted.
-  uint32_t clear;
+  uint32_t matching_clear;
+  // With HANGPOSE_CANDIDATES_CONTACTS, poses that lay a contact of the object on one of the supporter.
+  uint32_t settling_candidates;
+  // Those that are clear of the supporter.
+  uint32_t settling_clear;
+  // Poses that were let go.
+  uint32_t settling_released;
+  // Of these, those that rotated off,
+  uint32_t settling_rotated_off;
+  // slid off or fell through,
+  uint32_t settling_slid_off;
+  // or still moved after three seconds.
+  uint32_t settling_moving;
+  // Those that came to rest.
+  uint32_t settling_at_rest;
+  // Different rests that are probable enough.
+  uint32_t settling_firm;
   // Rays cast.
   uint64_t rays;
   // Distance and inside-outside queries made.
@@ -433,6 +555,9 @@ typedef struct hangpose_prediction {
 // No triangle of the mesh has an area.
 #define HANGPOSE_ERROR_DEGENERATE (-13)
 
+// The params ask to let the object go, but it was analysed without voxels.
+#define HANGPOSE_ERROR_NO_DISTANCE_FIELD (-14)
+
 // None: there are poses, or the search was stopped.
 #define HANGPOSE_STAGE_NONE 0
 
@@ -454,6 +579,18 @@ typedef struct hangpose_prediction {
 // Every pose runs the supporter through the object.
 #define HANGPOSE_STAGE_ALL_COLLIDE 6
 
+// Let go, the object turns and falls off, or most often does.
+#define HANGPOSE_STAGE_ROTATES_OFF 7
+
+// Let go, the object slides off or falls through, or most often does.
+#define HANGPOSE_STAGE_SLIDES_OFF 8
+
+// Let go, the object does not come to rest.
+#define HANGPOSE_STAGE_NEVER_RESTS 9
+
+// The object comes to rest, but a nudge would bring it down, or there is no room to put it there.
+#define HANGPOSE_STAGE_TOO_LOOSE 10
+
 // The library's own method.
 #define HANGPOSE_PROFILE_DEFAULT 0
 
@@ -468,6 +605,12 @@ typedef struct hangpose_prediction {
 
 // hangpose_params.given_centre_of_mass.
 #define HANGPOSE_CENTRE_OF_MASS_GIVEN 2
+
+// Every hanging site on every support site, as the paper matches them: section II-D.
+#define HANGPOSE_CANDIDATES_SITES 0
+
+// Every place of the object that can lie on something on every place of the supporter that can carry something.
+#define HANGPOSE_CANDIDATES_CONTACTS 1
 
 #ifdef __cplusplus
 extern "C" {
@@ -505,16 +648,16 @@ hangpose_status hangpose_limits_of(const struct hangpose_params *params,
                                    struct hangpose_limits *limits,
                                    struct hangpose_detail *detail);
 
-// Bytes of memory for any object within `limits`, by vertices, triangles and samples; 0 if `limits` is null or its
-// struct_size is wrong. Limits beyond all memory give more than there can be.
+// Bytes of memory for any object within `limits`, by vertices, triangles, samples and voxels; 0 if `limits` is null
+// or its struct_size is wrong. Limits beyond all memory give more than there can be.
 size_t hangpose_object_bytes(const struct hangpose_limits *limits);
 
 // Bytes of memory for any supporter within `limits`, by points; 0 if `limits` is null or its struct_size is wrong.
 // Limits beyond all memory give more than there can be.
 size_t hangpose_supporter_bytes(const struct hangpose_limits *limits);
 
-// Bytes of memory for matching any object and supporter within `limits`, by poses; 0 if `limits` is null or its
-// struct_size is wrong. Limits beyond all memory give more than there can be.
+// Bytes of memory for matching any object and supporter within `limits`, by points and poses; 0 if `limits` is
+// null or its struct_size is wrong. Limits beyond all memory give more than there can be.
 size_t hangpose_predict_bytes(const struct hangpose_limits *limits);
 
 // Readies a monitor, or a used one for the next call: not cancelled, no progress. `struct_size` is
@@ -536,11 +679,11 @@ uint32_t hangpose_monitor_is_cancelled(const struct hangpose_monitor *monitor);
 // How far the call is that runs under this monitor, from 0 to 1; 0 of a monitor that is null or was never readied.
 float hangpose_monitor_progress(const struct hangpose_monitor *monitor);
 
-// Analyses `mesh` in `memory`, which takes hangpose_object_bytes for its size and `params->samples`, and sets `object`
-// to what it made there, or to null. `monitor` may be null.
+// Analyses `mesh` in `memory`, which takes hangpose_object_bytes for its size and that of `params`, and sets `object` to
+// what it made there, or to null. `monitor` may be null.
 //
-// HANGPOSE_OK, or HANGPOSE_WORK_LIMIT with an object that may have more sites than were found; HANGPOSE_CANCELLED
-// without one.
+// HANGPOSE_OK, or HANGPOSE_WORK_LIMIT with an object that may have more sites or contacts than were found;
+// HANGPOSE_CANCELLED without one.
 hangpose_status hangpose_object_create(void *memory,
                                        size_t memory_size,
                                        const struct hangpose_mesh *mesh,
@@ -560,11 +703,17 @@ hangpose_status hangpose_object_get_site(const struct hangpose_object *object,
                                          struct hangpose_object_site *site,
                                          struct hangpose_detail *detail);
 
+// Writes contact `index`, below hangpose_object_info.contacts, to `contact`; the one that catches best is 0.
+hangpose_status hangpose_object_get_contact(const struct hangpose_object *object,
+                                            uint32_t index,
+                                            struct hangpose_object_contact *contact,
+                                            struct hangpose_detail *detail);
+
 // Analyses `cloud` in `memory`, which takes hangpose_supporter_bytes for its size, and sets `supporter` to what it made
 // there, or to null. Memory for more points makes room for later updates. `monitor` may be null.
 //
-// HANGPOSE_OK, or HANGPOSE_WORK_LIMIT with a supporter that may have more sites than were found; HANGPOSE_CANCELLED
-// without one.
+// HANGPOSE_OK, or HANGPOSE_WORK_LIMIT with a supporter that may have more sites or contacts than were found;
+// HANGPOSE_CANCELLED without one.
 hangpose_status hangpose_supporter_create(void *memory,
                                           size_t memory_size,
                                           const struct hangpose_cloud *cloud,
@@ -593,9 +742,16 @@ hangpose_status hangpose_supporter_get_site(const struct hangpose_supporter *sup
                                             struct hangpose_supporter_site *site,
                                             struct hangpose_detail *detail);
 
-// Matches an object with a supporter and writes the best poses to `poses`, best first, at most `pose_capacity`, which
-// is at least 1; more room takes more time. `pose_size` is sizeof(hangpose_pose). `memory` takes
-// hangpose_predict_bytes and is needed during the call only. `monitor` may be null.
+// Writes contact `index`, below hangpose_supporter_info.contacts, to `contact`.
+hangpose_status hangpose_supporter_get_contact(const struct hangpose_supporter *supporter,
+                                               uint32_t index,
+                                               struct hangpose_supporter_contact *contact,
+                                               struct hangpose_detail *detail);
+
+// Finds poses in which an object hangs on a supporter and writes the best to `poses`, best first, at most `pose_capacity`,
+// which is at least 1; more room may take more time. Both must have been analysed with the same `params`. `pose_size`
+// is sizeof(hangpose_pose). `memory` takes hangpose_predict_bytes and is needed during the call only. `monitor` may be
+// null.
 //
 // HANGPOSE_OK with at least one pose; HANGPOSE_REJECTED, and `prediction->stage` says why; HANGPOSE_CANCELLED or
 // HANGPOSE_WORK_LIMIT with the best poses until then, or none.

@@ -109,6 +109,7 @@ mod tests {
             CloudError::Viewpoint { position: worst }.into(),
             ParamsError::Gravity { gravity: worst }.into(),
             ParamsError::CentreOfMass { point: worst }.into(),
+            Failure::NoDistanceField,
         ] {
             let text = failure.to_string();
             assert!(text.len() < HANGPOSE_MESSAGE_CHARS, "{} bytes: {text}", text.len());

@@ -6,7 +6,7 @@ use crate::status::*;
 use core::fmt::{Display, Formatter};
 use hangpose_core::ParamsError;
 use hangpose_core::geometry::{CloudError, MAX_COORDINATE, MAX_COUNT, MeshError};
-use hangpose_core::hanging::AnalysisError;
+use hangpose_core::hanging::{AnalysisError, PredictError};
 use hangpose_core::memory::OutOfMemory;
 use hangpose_core::perception::sampling::SamplingError;
 
@@ -28,6 +28,7 @@ pub(crate) enum Failure {
     Mesh(MeshError),
     Cloud(CloudError),
     Params(ParamsError),
+    NoDistanceField,
     Cancelled,
 }
 
@@ -66,6 +67,7 @@ impl Failure {
             ) => HANGPOSE_ERROR_VALUE,
             Self::Index { .. } | Self::Mesh(MeshError::Index { .. }) => HANGPOSE_ERROR_INDEX,
             Self::Mesh(MeshError::AllDegenerate { .. }) => HANGPOSE_ERROR_DEGENERATE,
+            Self::NoDistanceField => HANGPOSE_ERROR_NO_DISTANCE_FIELD,
             Self::Cancelled => HANGPOSE_CANCELLED,
         }
     }
@@ -101,6 +103,7 @@ impl Failure {
             Self::Mesh(error) => mesh_place(error),
             Self::Cloud(error) => cloud_place(error),
             Self::Params(error) => params_place(error),
+            Self::NoDistanceField => Place::of("object"),
             Self::Cancelled => Place::default(),
         }
     }
@@ -220,6 +223,7 @@ impl Display for Failure {
             Self::Mesh(error) => error.fmt(f),
             Self::Cloud(error) => error.fmt(f),
             Self::Params(error) => error.fmt(f),
+            Self::NoDistanceField => PredictError::NoDistanceField.fmt(f),
             Self::Cancelled => f.write_str("cancelled"),
         }
     }
@@ -255,6 +259,16 @@ impl From<AnalysisError> for Failure {
             AnalysisError::Params(error) => error.into(),
             AnalysisError::OutOfMemory(error) => error.into(),
             AnalysisError::Cancelled => Self::Cancelled,
+        }
+    }
+}
+
+impl From<PredictError> for Failure {
+    fn from(error: PredictError) -> Self {
+        match error {
+            PredictError::Params(error) => error.into(),
+            PredictError::OutOfMemory(error) => error.into(),
+            PredictError::NoDistanceField => Self::NoDistanceField,
         }
     }
 }

@@ -35,7 +35,7 @@ pub use mesh::hangpose_mesh;
 pub use monitor::*;
 pub use object::*;
 pub use params::*;
-pub use pose::hangpose_pose;
+pub use pose::*;
 pub use predict::{hangpose_predict, hangpose_prediction};
 pub use sample::{hangpose_mesh_sample, hangpose_sample_bytes};
 pub use status::*;

@@ -7,7 +7,7 @@ use crate::params::hangpose_params;
 use crate::predict::pose_bytes;
 use crate::status::*;
 use crate::supporter::SupporterHandle;
-use hangpose_core::hanging::{Object, Supporter};
+use hangpose_core::hanging::{Object, Supporter, predict_bytes};
 use hangpose_core::memory::Limits;
 
 /// How large the inputs may be that memory is set aside for. What stays below needs no more.
@@ -22,6 +22,8 @@ pub struct hangpose_limits {
     pub triangles: u32,
     /// hangpose_params.samples.
     pub samples: u32,
+    /// hangpose_params.voxels.
+    pub voxels: u32,
     /// Points of the supporter's cloud.
     pub points: u32,
     /// Poses asked of hangpose_predict.
@@ -33,31 +35,13 @@ unsafe impl Public for hangpose_limits {
     const NAME: &'static str = "limits";
 }
 
-// What HANGPOSE_OBJECT_BYTES and its like in the header are made of: the library's queries grow by no more than this
-// for each vertex, triangle, sample, point and pose. The tests hold them against the queries.
-/// Used by HANGPOSE_OBJECT_BYTES.
-pub const HANGPOSE_OBJECT_BYTES_EACH_VERTEX: usize = 8;
-/// Used by HANGPOSE_OBJECT_BYTES.
-pub const HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE: usize = 124;
-/// Used by HANGPOSE_OBJECT_BYTES.
-pub const HANGPOSE_OBJECT_BYTES_EACH_SAMPLE: usize = 312;
-/// Used by HANGPOSE_OBJECT_BYTES.
-pub const HANGPOSE_OBJECT_BYTES_AT_LEAST: usize = 20480;
-/// Used by HANGPOSE_SUPPORTER_BYTES.
-pub const HANGPOSE_SUPPORTER_BYTES_EACH_POINT: usize = 180;
-/// Used by HANGPOSE_SUPPORTER_BYTES.
-pub const HANGPOSE_SUPPORTER_BYTES_AT_LEAST: usize = 14336;
-/// Used by HANGPOSE_PREDICT_BYTES.
-pub const HANGPOSE_PREDICT_BYTES_EACH_POSE: usize = 56;
-/// Used by HANGPOSE_PREDICT_BYTES.
-pub const HANGPOSE_PREDICT_BYTES_AT_LEAST: usize = 16;
-
 impl hangpose_limits {
     pub(crate) fn to_core(self) -> Limits {
         Limits {
             vertices: self.vertices as usize,
             triangles: self.triangles as usize,
             samples: self.samples as usize,
+            voxels: self.voxels as usize,
             points: self.points as usize,
         }
     }
@@ -91,6 +75,7 @@ pub unsafe extern "C" fn hangpose_limits_of(
             vertices: mesh.map_or(0, |mesh| mesh.vertex_count),
             triangles: mesh.map_or(0, |mesh| mesh.triangle_count),
             samples: params.samples,
+            voxels: params.voxels,
             points: cloud.map_or(0, |cloud| cloud.point_count),
             poses: 1,
         };
@@ -100,8 +85,8 @@ pub unsafe extern "C" fn hangpose_limits_of(
     unsafe { report(detail, set) }
 }
 
-/// Bytes of memory for any object within `limits`, by vertices, triangles and samples; 0 if `limits` is null or its
-/// struct_size is wrong. Limits beyond all memory give more than there can be.
+/// Bytes of memory for any object within `limits`, by vertices, triangles, samples and voxels; 0 if `limits` is null
+/// or its struct_size is wrong. Limits beyond all memory give more than there can be.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_object_bytes(limits: *const hangpose_limits) -> usize {
     // SAFETY: the caller vouches for the pointer.
@@ -118,12 +103,14 @@ pub unsafe extern "C" fn hangpose_supporter_bytes(limits: *const hangpose_limits
     }
 }
 
-/// Bytes of memory for matching any object and supporter within `limits`, by poses; 0 if `limits` is null or its
-/// struct_size is wrong. Limits beyond all memory give more than there can be.
+/// Bytes of memory for matching any object and supporter within `limits`, by points and poses; 0 if `limits` is
+/// null or its struct_size is wrong. Limits beyond all memory give more than there can be.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_predict_bytes(limits: *const hangpose_limits) -> usize {
     // SAFETY: the caller vouches for the pointer.
-    unsafe { bytes(limits, |limits| pose_bytes(limits.poses)) }
+    unsafe {
+        bytes(limits, |limits| pose_bytes(limits.poses).saturating_add(predict_bytes(&limits.to_core())))
+    }
 }
 
 /// # Safety

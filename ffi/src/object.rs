@@ -24,11 +24,11 @@ impl Model for Object<'static> {
     const MAKER: &'static str = "hangpose_object_create";
 }
 
-/// Analyses `mesh` in `memory`, which takes hangpose_object_bytes for its size and `params->samples`, and sets `object`
-/// to what it made there, or to null. `monitor` may be null.
+/// Analyses `mesh` in `memory`, which takes hangpose_object_bytes for its size and that of `params`, and sets `object` to
+/// what it made there, or to null. `monitor` may be null.
 ///
-/// HANGPOSE_OK, or HANGPOSE_WORK_LIMIT with an object that may have more sites than were found; HANGPOSE_CANCELLED
-/// without one.
+/// HANGPOSE_OK, or HANGPOSE_WORK_LIMIT with an object that may have more sites or contacts than were found;
+/// HANGPOSE_CANCELLED without one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_object_create(
     memory: *mut c_void,
@@ -64,6 +64,7 @@ pub unsafe extern "C" fn hangpose_object_create(
             vertices: mesh.vertex_count as usize,
             triangles: mesh.triangle_count as usize,
             samples: params.samples,
+            voxels: params.voxels,
             points: 0,
         };
         let none = Monitor::new();
@@ -88,7 +89,7 @@ pub unsafe extern "C" fn hangpose_object_create(
 pub struct hangpose_object_info {
     /// sizeof(hangpose_object_info), set by the caller.
     pub struct_size: u32,
-    /// HANGPOSE_WORK_LIMIT where the search for sites ended early, HANGPOSE_OK where it did not.
+    /// HANGPOSE_WORK_LIMIT where the search for sites or contacts ended early, HANGPOSE_OK where it did not.
     pub stopped: hangpose_status,
     /// 1 where the mesh is closed, so that it has a volume, else 0.
     pub is_closed: u32,
@@ -108,8 +109,10 @@ pub struct hangpose_object_info {
     pub with_free_space: u32,
     /// Free spaces that the object encircles, eq. (6).
     pub encircled: u32,
-    /// Different ones among them, eq. (7): the object's hanging sites.
+    /// Different ones among them, eq. (7): the object's hanging sites; 0 with HANGPOSE_CANDIDATES_CONTACTS.
     pub sites: u32,
+    /// Places where the object can lie on something; 0 with HANGPOSE_CANDIDATES_SITES.
+    pub contacts: u32,
     /// Rays cast.
     pub rays: u64,
     /// Distance and inside-outside queries made.
@@ -150,6 +153,7 @@ pub unsafe extern "C" fn hangpose_object_get_info(
             with_free_space: counts.with_free_space as u32,
             encircled: counts.encircled as u32,
             sites: counts.sites as u32,
+            contacts: object.contacts().len() as u32,
             rays: work.rays,
             distance_queries: work.distance_queries,
         };
@@ -219,6 +223,70 @@ pub unsafe extern "C" fn hangpose_object_get_site(
             encircled: found.encircled,
             encircled_above: found.encircled_above,
             encircled_below: found.encircled_below,
+        };
+        Ok(HANGPOSE_OK)
+    };
+    // SAFETY: the caller vouches for the detail.
+    unsafe { report(detail, get) }
+}
+
+/// A place where an object can lie on something.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hangpose_object_contact {
+    /// sizeof(hangpose_object_contact), set by the caller.
+    pub struct_size: u32,
+    /// x, y, z of a point on the surface, metres, in object coordinates.
+    pub position: [f32; 3],
+    /// Unit vector out of the solid, in object coordinates.
+    pub normal: [f32; 3],
+    /// Unit vector along the thin bar that the object catches best under the point, in object coordinates; its sign means
+    /// nothing.
+    pub bar_direction: [f32; 3],
+    /// How far such a bar must come down before it gets out sideways, metres; 0 if it is not caught.
+    pub capture: f32,
+    /// How far it is to the surface opposite, metres; infinite where there is none.
+    pub room: f32,
+}
+
+// SAFETY: `repr(C)` over numbers, `struct_size` first.
+unsafe impl Public for hangpose_object_contact {
+    const NAME: &'static str = "contact";
+}
+
+/// Writes contact `index`, below hangpose_object_info.contacts, to `contact`; the one that catches best is 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_object_get_contact(
+    object: *const hangpose_object,
+    index: u32,
+    contact: *mut hangpose_object_contact,
+    detail: *mut hangpose_detail,
+) -> hangpose_status {
+    let get = || {
+        // SAFETY: the caller vouches for the pointer.
+        let object = unsafe { ObjectHandle::share(object.cast()) }?;
+        let [handle, arena] = object.regions();
+        keep_apart(&[
+            Region::written(DETAIL, detail, 1),
+            Region::written("contact", contact, 1),
+            handle,
+            arena,
+        ])?;
+        // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
+        let contact = unsafe { output(contact) }?;
+        let contacts = object.model().contacts();
+        let found = contacts.get(index as usize).ok_or(Failure::Index {
+            argument: "index",
+            index,
+            count: contacts.len(),
+        })?;
+        *contact = hangpose_object_contact {
+            struct_size: size_of::<hangpose_object_contact>() as u32,
+            position: found.position.into(),
+            normal: found.normal.into(),
+            bar_direction: found.bar_direction.into(),
+            capture: found.capture,
+            room: found.room,
         };
         Ok(HANGPOSE_OK)
     };

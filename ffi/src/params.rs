@@ -3,7 +3,7 @@ use crate::detail::hangpose_detail;
 use crate::failure::Failure;
 use crate::status::*;
 use crate::version;
-use hangpose_core::{CentreOfMass, Params};
+use hangpose_core::{Candidates, CentreOfMass, Params};
 
 /// A set of defaults, one of HANGPOSE_PROFILE_*.
 pub type hangpose_profile = u32;
@@ -22,6 +22,14 @@ pub const HANGPOSE_CENTRE_OF_MASS_SAMPLE_MEAN: hangpose_centre_of_mass = 0;
 pub const HANGPOSE_CENTRE_OF_MASS_VOLUME: hangpose_centre_of_mass = 1;
 /// hangpose_params.given_centre_of_mass.
 pub const HANGPOSE_CENTRE_OF_MASS_GIVEN: hangpose_centre_of_mass = 2;
+
+/// Where the poses come from that are looked at, one of HANGPOSE_CANDIDATES_*.
+pub type hangpose_candidates = u32;
+
+/// Every hanging site on every support site, as the paper matches them: section II-D.
+pub const HANGPOSE_CANDIDATES_SITES: hangpose_candidates = 0;
+/// Every place of the object that can lie on something on every place of the supporter that can carry something.
+pub const HANGPOSE_CANDIDATES_CONTACTS: hangpose_candidates = 1;
 
 /// The constants of the method, with the paper's symbols. Set them with hangpose_params_init, and then change single
 /// ones. Every call that takes them checks each against its range.
@@ -83,6 +91,25 @@ pub struct hangpose_params {
     pub boundary_weight: f32,
     /// gamma_3: weight of the contact-area cost S_a, eq. (11); 0 to 1.
     pub contact_area_weight: f32,
+
+    /// Where poses come from, one of HANGPOSE_CANDIDATES_*. All above from cluster_bandwidth on is for
+    /// HANGPOSE_CANDIDATES_SITES.
+    pub candidates: hangpose_candidates,
+    /// 1 where gravity acts before the answer is given, so that only what comes to rest, and stays, is a pose; else 0.
+    pub settle: u32,
+    /// Coulomb's coefficient of friction between object and supporter; 0 to 2.
+    pub friction: f32,
+    /// How far off the supporter the object is let go, metres, where there is room for that; 0 to 0.01.
+    pub clearance: f32,
+    /// Nodes of the object's signed distance field at most; 0 to 100000000, at least 1 for `settle` and for
+    /// HANGPOSE_CANDIDATES_CONTACTS.
+    pub voxels: u32,
+    /// Poses that are let go at most; 0 to 10000.
+    pub settle_attempts: u32,
+    /// No more poses are let go when so many stay; 0 to 10000.
+    pub firm_enough: u32,
+    /// Poses that are less likely to hang than this are none; 0 to 1.
+    pub min_probability: f32,
 }
 
 // SAFETY: `repr(C)` over numbers, `struct_size` first.
@@ -146,6 +173,14 @@ impl hangpose_params {
             collision_weight,
             boundary_weight,
             contact_area_weight,
+            candidates,
+            settle,
+            friction,
+            clearance,
+            voxels,
+            settle_attempts,
+            firm_enough,
+            min_probability,
         } = params;
         let (centre_of_mass, given_centre_of_mass) = match centre_of_mass {
             CentreOfMass::SampleMean => (HANGPOSE_CENTRE_OF_MASS_SAMPLE_MEAN, [0.0; 3]),
@@ -179,6 +214,17 @@ impl hangpose_params {
             collision_weight,
             boundary_weight,
             contact_area_weight,
+            candidates: match candidates {
+                Candidates::Sites => HANGPOSE_CANDIDATES_SITES,
+                Candidates::Contacts => HANGPOSE_CANDIDATES_CONTACTS,
+            },
+            settle: u32::from(settle),
+            friction,
+            clearance,
+            voxels: voxels as u32,
+            settle_attempts: settle_attempts as u32,
+            firm_enough: firm_enough as u32,
+            min_probability,
         }
     }
 
@@ -192,6 +238,19 @@ impl hangpose_params {
                 let (field, most) = ("params.centre_of_mass", HANGPOSE_CENTRE_OF_MASS_GIVEN);
                 return Err(Failure::Choice { field, value, most });
             }
+        };
+        let candidates = match self.candidates {
+            HANGPOSE_CANDIDATES_SITES => Candidates::Sites,
+            HANGPOSE_CANDIDATES_CONTACTS => Candidates::Contacts,
+            value => {
+                let (field, most) = ("params.candidates", HANGPOSE_CANDIDATES_CONTACTS);
+                return Err(Failure::Choice { field, value, most });
+            }
+        };
+        let settle = match self.settle {
+            0 => false,
+            1 => true,
+            value => return Err(Failure::Choice { field: "params.settle", value, most: 1 }),
         };
         let params = Params {
             seed: self.seed,
@@ -218,6 +277,14 @@ impl hangpose_params {
             collision_weight: self.collision_weight,
             boundary_weight: self.boundary_weight,
             contact_area_weight: self.contact_area_weight,
+            candidates,
+            settle,
+            friction: self.friction,
+            clearance: self.clearance,
+            voxels: self.voxels as usize,
+            settle_attempts: self.settle_attempts as usize,
+            firm_enough: self.firm_enough as usize,
+            min_probability: self.min_probability,
         };
         params.validate()?;
         Ok(params)
@@ -247,8 +314,14 @@ mod tests {
             (place.prefix, place.field, place.range),
             ("params.", "samples", Some([100.0, 500_000.0]))
         );
-        params = hangpose_params::from_core(&Params::default());
-        params.centre_of_mass = 3;
-        assert_eq!(params.to_core().unwrap_err().status(), HANGPOSE_ERROR_VALUE);
+        let right = hangpose_params::from_core(&Params::default());
+        for wrong in [
+            hangpose_params { centre_of_mass: 3, ..right },
+            hangpose_params { candidates: 2, ..right },
+            hangpose_params { settle: 2, ..right },
+            hangpose_params { voxels: 0, ..right },
+        ] {
+            assert_eq!(wrong.to_core().unwrap_err().status(), HANGPOSE_ERROR_VALUE);
+        }
     }
 }

@@ -43,6 +43,8 @@ pub const HANGPOSE_ERROR_VALUE: hangpose_status = -11;
 pub const HANGPOSE_ERROR_INDEX: hangpose_status = -12;
 /// No triangle of the mesh has an area.
 pub const HANGPOSE_ERROR_DEGENERATE: hangpose_status = -13;
+/// The params ask to let the object go, but it was analysed without voxels.
+pub const HANGPOSE_ERROR_NO_DISTANCE_FIELD: hangpose_status = -14;
 
 /// The step of the method that left nothing to hang, one of HANGPOSE_STAGE_*.
 pub type hangpose_stage = u32;
@@ -61,6 +63,14 @@ pub const HANGPOSE_STAGE_NO_SUPPORT: hangpose_stage = 4;
 pub const HANGPOSE_STAGE_TOO_THICK: hangpose_stage = 5;
 /// Every pose runs the supporter through the object.
 pub const HANGPOSE_STAGE_ALL_COLLIDE: hangpose_stage = 6;
+/// Let go, the object turns and falls off, or most often does.
+pub const HANGPOSE_STAGE_ROTATES_OFF: hangpose_stage = 7;
+/// Let go, the object slides off or falls through, or most often does.
+pub const HANGPOSE_STAGE_SLIDES_OFF: hangpose_stage = 8;
+/// Let go, the object does not come to rest.
+pub const HANGPOSE_STAGE_NEVER_RESTS: hangpose_stage = 9;
+/// The object comes to rest, but a nudge would bring it down, or there is no room to put it there.
+pub const HANGPOSE_STAGE_TOO_LOOSE: hangpose_stage = 10;
 
 pub(crate) fn stage(stage: Stage) -> hangpose_stage {
     match stage {
@@ -70,6 +80,10 @@ pub(crate) fn stage(stage: Stage) -> hangpose_stage {
         Stage::NoSupport => HANGPOSE_STAGE_NO_SUPPORT,
         Stage::TooThick => HANGPOSE_STAGE_TOO_THICK,
         Stage::AllCollide => HANGPOSE_STAGE_ALL_COLLIDE,
+        Stage::RotatesOff => HANGPOSE_STAGE_ROTATES_OFF,
+        Stage::SlidesOff => HANGPOSE_STAGE_SLIDES_OFF,
+        Stage::NeverRests => HANGPOSE_STAGE_NEVER_RESTS,
+        Stage::TooLoose => HANGPOSE_STAGE_TOO_LOOSE,
     }
 }
 
@@ -113,6 +127,7 @@ pub(crate) fn status_text(status: hangpose_status) -> &'static CStr {
         HANGPOSE_ERROR_VALUE => c"a value is out of range",
         HANGPOSE_ERROR_INDEX => c"an index is out of range",
         HANGPOSE_ERROR_DEGENERATE => c"no triangle has an area",
+        HANGPOSE_ERROR_NO_DISTANCE_FIELD => c"the object was analysed without voxels",
         _ => c"unknown status",
     }
 }
@@ -135,6 +150,10 @@ pub(crate) fn stage_text(stage: hangpose_stage) -> &'static CStr {
             c"every part of the supporter that faces up is too thick for the object's free spaces"
         }
         HANGPOSE_STAGE_ALL_COLLIDE => c"in every pose the supporter runs through the object",
+        HANGPOSE_STAGE_ROTATES_OFF => c"wherever it is let go, the object rotates off",
+        HANGPOSE_STAGE_SLIDES_OFF => c"wherever it is let go, the object slides off",
+        HANGPOSE_STAGE_NEVER_RESTS => c"wherever it is let go, the object does not come to rest",
+        HANGPOSE_STAGE_TOO_LOOSE => c"where the object comes to rest, a nudge would bring it down",
         _ => c"unknown stage",
     }
 }
@@ -154,6 +173,10 @@ mod tests {
             Stage::NoSupport,
             Stage::TooThick,
             Stage::AllCollide,
+            Stage::RotatesOff,
+            Stage::SlidesOff,
+            Stage::NeverRests,
+            Stage::TooLoose,
         ] {
             assert_eq!(stage_text(stage(core)).to_str().unwrap(), core.to_string());
         }
@@ -161,10 +184,10 @@ mod tests {
 
     #[test]
     fn every_status_has_words() {
-        for status in -13..=3 {
+        for status in -14..=3 {
             assert_ne!(status_text(status), c"unknown status", "{status}");
         }
-        for status in [i32::MIN, -14, 4, i32::MAX] {
+        for status in [i32::MIN, -15, 4, i32::MAX] {
             assert_eq!(status_text(status), c"unknown status");
         }
     }

@@ -26,14 +26,15 @@ impl Model for Supporter<'static> {
 
 /// Bytes behind the handle for a cloud.
 fn model_bytes(cloud: &hangpose_cloud) -> usize {
-    Supporter::bytes(&Limits { vertices: 0, triangles: 0, samples: 0, points: cloud.point_count as usize })
+    let points = cloud.point_count as usize;
+    Supporter::bytes(&Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points })
 }
 
 /// Analyses `cloud` in `memory`, which takes hangpose_supporter_bytes for its size, and sets `supporter` to what it made
 /// there, or to null. Memory for more points makes room for later updates. `monitor` may be null.
 ///
-/// HANGPOSE_OK, or HANGPOSE_WORK_LIMIT with a supporter that may have more sites than were found; HANGPOSE_CANCELLED
-/// without one.
+/// HANGPOSE_OK, or HANGPOSE_WORK_LIMIT with a supporter that may have more sites or contacts than were found;
+/// HANGPOSE_CANCELLED without one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_supporter_create(
     memory: *mut c_void,
@@ -143,7 +144,7 @@ pub unsafe extern "C" fn hangpose_supporter_update(
 pub struct hangpose_supporter_info {
     /// sizeof(hangpose_supporter_info), set by the caller.
     pub struct_size: u32,
-    /// HANGPOSE_WORK_LIMIT where the search for sites ended early, HANGPOSE_OK where it did not.
+    /// HANGPOSE_WORK_LIMIT where the search for sites or contacts ended early, HANGPOSE_OK where it did not.
     pub stopped: hangpose_status,
     /// Points of the cloud.
     pub points: u32,
@@ -155,8 +156,11 @@ pub struct hangpose_supporter_info {
     pub contact_points: u32,
     /// Clusters of them.
     pub clusters: u32,
-    /// Clusters at which a slice through the supporter holds together: the support sites.
+    /// Clusters at which a slice through the supporter holds together: the support sites; 0 with
+    /// HANGPOSE_CANDIDATES_CONTACTS.
     pub sites: u32,
+    /// Places where something can lie on the supporter; 0 with HANGPOSE_CANDIDATES_SITES.
+    pub contacts: u32,
     /// Rays cast.
     pub rays: u64,
     /// Distance and inside-outside queries made.
@@ -193,6 +197,7 @@ pub unsafe extern "C" fn hangpose_supporter_get_info(
             contact_points: counts.contact_points as u32,
             clusters: counts.clusters as u32,
             sites: counts.sites as u32,
+            contacts: supporter.contacts().len() as u32,
             rays: work.rays,
             distance_queries: work.distance_queries,
         };
@@ -255,6 +260,64 @@ pub unsafe extern "C" fn hangpose_supporter_get_site(
             contact_point: found.contact_point.into(),
             support_radius: found.support_radius,
             boundary_distances: found.boundary_distances,
+        };
+        Ok(HANGPOSE_OK)
+    };
+    // SAFETY: the caller vouches for the detail.
+    unsafe { report(detail, get) }
+}
+
+/// A place where something can lie on a supporter.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hangpose_supporter_contact {
+    /// sizeof(hangpose_supporter_contact), set by the caller.
+    pub struct_size: u32,
+    /// x, y, z of a point of the supporter, metres, in supporter coordinates.
+    pub position: [f32; 3],
+    /// Unit vector out of the solid, in supporter coordinates.
+    pub normal: [f32; 3],
+    /// Unit vector along which the supporter stretches around the point, in supporter coordinates; its sign means
+    /// nothing.
+    pub bar_direction: [f32; 3],
+}
+
+// SAFETY: `repr(C)` over numbers, `struct_size` first.
+unsafe impl Public for hangpose_supporter_contact {
+    const NAME: &'static str = "contact";
+}
+
+/// Writes contact `index`, below hangpose_supporter_info.contacts, to `contact`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_supporter_get_contact(
+    supporter: *const hangpose_supporter,
+    index: u32,
+    contact: *mut hangpose_supporter_contact,
+    detail: *mut hangpose_detail,
+) -> hangpose_status {
+    let get = || {
+        // SAFETY: the caller vouches for the pointer.
+        let supporter = unsafe { SupporterHandle::share(supporter.cast()) }?;
+        let [handle, arena] = supporter.regions();
+        keep_apart(&[
+            Region::written(DETAIL, detail, 1),
+            Region::written("contact", contact, 1),
+            handle,
+            arena,
+        ])?;
+        // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
+        let contact = unsafe { output(contact) }?;
+        let contacts = supporter.model().contacts();
+        let found = contacts.get(index as usize).ok_or(Failure::Index {
+            argument: "index",
+            index,
+            count: contacts.len(),
+        })?;
+        *contact = hangpose_supporter_contact {
+            struct_size: size_of::<hangpose_supporter_contact>() as u32,
+            position: found.position.into(),
+            normal: found.normal.into(),
+            bar_direction: found.bar_direction.into(),
         };
         Ok(HANGPOSE_OK)
     };

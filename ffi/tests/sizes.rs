@@ -1,91 +1,101 @@
-//! The constants behind HANGPOSE_OBJECT_BYTES and its like, held against the queries.
+//! HANGPOSE_OBJECT_BYTES and its like in the header, held against the queries.
 
 use hangpose_ffi::*;
 
-fn limits(vertices: u32, triangles: u32, samples: u32, points: u32, poses: u32) -> hangpose_limits {
-    let struct_size = size_of::<hangpose_limits>() as u32;
-    hangpose_limits { struct_size, vertices, triangles, samples, points, poses }
-}
+const NONE: hangpose_limits = hangpose_limits {
+    struct_size: size_of::<hangpose_limits>() as u32,
+    vertices: 0,
+    triangles: 0,
+    samples: 0,
+    voxels: 0,
+    points: 0,
+    poses: 0,
+};
 
-fn object(vertices: u32, triangles: u32, samples: u32) -> usize {
-    // SAFETY: the limits are there.
-    unsafe { hangpose_object_bytes(&limits(vertices, triangles, samples, 0, 0)) }
-}
-
-fn supporter(points: u32) -> usize {
-    // SAFETY: the limits are there.
-    unsafe { hangpose_supporter_bytes(&limits(0, 0, 0, points, 0)) }
-}
-
-fn predict(poses: u32) -> usize {
-    // SAFETY: the limits are there.
-    unsafe { hangpose_predict_bytes(&limits(0, 0, 0, 0, poses)) }
-}
-
-/// What one more of many takes, rounded up.
-fn slope(bytes: impl Fn(u32) -> usize) -> usize {
-    const MANY: u32 = 10_000_000;
-    (bytes(2 * MANY) - bytes(MANY)).div_ceil(MANY as usize)
+/// A constant of the header.
+fn constant(name: &str) -> usize {
+    let header = include_str!("../../include/hangpose.h");
+    let line =
+        header.lines().find_map(|line| line.strip_prefix("#define ")?.strip_prefix(name)?.strip_prefix(' '));
+    line.unwrap_or_else(|| panic!("no {name} in the header")).parse().unwrap()
 }
 
 #[test]
 fn the_macros_never_give_less_than_the_queries() {
-    // No query gives more for all of its limits together than for each alone, added up; rounding to whole arrays adds
-    // less than a page.
-    let each = [
-        ("OBJECT_BYTES_EACH_VERTEX", HANGPOSE_OBJECT_BYTES_EACH_VERTEX, slope(|n| object(n, 0, 0))),
-        ("OBJECT_BYTES_EACH_TRIANGLE", HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE, slope(|n| object(0, n, 0))),
-        ("OBJECT_BYTES_EACH_SAMPLE", HANGPOSE_OBJECT_BYTES_EACH_SAMPLE, slope(|n| object(0, 0, n))),
-        (
-            "OBJECT_BYTES_AT_LEAST",
-            HANGPOSE_OBJECT_BYTES_AT_LEAST,
-            object(0, 0, 0).next_multiple_of(1024) + 1024,
-        ),
-        ("SUPPORTER_BYTES_EACH_POINT", HANGPOSE_SUPPORTER_BYTES_EACH_POINT, slope(supporter)),
-        (
-            "SUPPORTER_BYTES_AT_LEAST",
-            HANGPOSE_SUPPORTER_BYTES_AT_LEAST,
-            supporter(0).next_multiple_of(1024) + 1024,
-        ),
-        ("PREDICT_BYTES_EACH_POSE", HANGPOSE_PREDICT_BYTES_EACH_POSE, slope(predict)),
-        ("PREDICT_BYTES_AT_LEAST", HANGPOSE_PREDICT_BYTES_AT_LEAST, predict(0).next_multiple_of(16)),
-    ];
-    let stale: Vec<_> = each.iter().filter(|(_, is, should_be)| is != should_be).collect();
-    assert!(stale.is_empty(), "write into ffi/src/limits.rs, and then `make header`: {stale:#?}");
-
     let sizes = [0, 1, 2, 3, 100, 1000, 12_345, 100_000, 2_000_000];
-    let object_macro = |vertices: u32, triangles: u32, samples: u32| {
-        HANGPOSE_OBJECT_BYTES_AT_LEAST
-            + HANGPOSE_OBJECT_BYTES_EACH_VERTEX * vertices as usize
-            + HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE * triangles as usize
-            + HANGPOSE_OBJECT_BYTES_EACH_SAMPLE * samples as usize
+    let [at_least, vertex, triangle, sample, voxel] =
+        ["AT_LEAST", "EACH_VERTEX", "EACH_TRIANGLE", "EACH_SAMPLE", "EACH_VOXEL"]
+            .map(|name| constant(&format!("HANGPOSE_OBJECT_BYTES_{name}")));
+    let given = |limits: &hangpose_limits| {
+        at_least
+            + vertex * limits.vertices as usize
+            + triangle * limits.triangles as usize
+            + sample * limits.samples as usize
+            + voxel * limits.voxels as usize
     };
-    for a in sizes {
-        for b in sizes {
-            for c in sizes {
-                let (given, needed) = (object_macro(a, b, c), object(a, b, c));
-                assert!(given >= needed, "{a} vertices, {b} triangles, {c} samples: {given} < {needed}");
+    // SAFETY: the limits are there.
+    let needed = |limits: &hangpose_limits| unsafe { hangpose_object_bytes(limits) };
+    for vertices in sizes {
+        for triangles in sizes {
+            for samples in sizes {
+                for voxels in sizes {
+                    let limits = hangpose_limits { vertices, triangles, samples, voxels, ..NONE };
+                    let (given, needed) = (given(&limits), needed(&limits));
+                    assert!(
+                        given >= needed,
+                        "{vertices} vertices, {triangles} triangles, {samples} samples, {voxels} voxels: {given} < {needed}"
+                    );
+                }
             }
         }
-        let given = HANGPOSE_SUPPORTER_BYTES_AT_LEAST + HANGPOSE_SUPPORTER_BYTES_EACH_POINT * a as usize;
-        assert!(
-            (supporter(a)..supporter(a) + 4096 + supporter(a) / 20).contains(&given),
-            "{a} points: {given}"
-        );
-        let given = HANGPOSE_PREDICT_BYTES_AT_LEAST + HANGPOSE_PREDICT_BYTES_EACH_POSE * a as usize;
-        assert!((predict(a)..predict(a) + 64).contains(&given), "{a} poses: {given}");
     }
-    // How much more than needed, for a mug and the default samples.
-    let (given, needed) = (object_macro(3556, 7040, 10_000), object(3556, 7040, 10_000));
-    assert!(given < needed + needed / 3, "{given} bytes for {needed}");
+    // How much more than needed, for a mug and the default params.
+    let params = hangpose::Params::default();
+    let (samples, voxels) = (params.samples as u32, params.voxels as u32);
+    let mug = hangpose_limits { vertices: 3556, triangles: 7040, samples, voxels, ..NONE };
+    assert!(given(&mug) < needed(&mug) + needed(&mug) / 2, "{} bytes for {}", given(&mug), needed(&mug));
+
+    let [at_least, point] =
+        ["AT_LEAST", "EACH_POINT"].map(|name| constant(&format!("HANGPOSE_SUPPORTER_BYTES_{name}")));
+    for points in sizes {
+        let given = at_least + point * points as usize;
+        // SAFETY: the limits are there.
+        let needed = unsafe { hangpose_supporter_bytes(&hangpose_limits { points, ..NONE }) };
+        assert!(
+            (needed..needed + 4096 + needed / 20).contains(&given),
+            "{points} points: {given} for {needed}"
+        );
+    }
+
+    let [at_least, point, pose] = ["AT_LEAST", "EACH_POINT", "EACH_POSE"]
+        .map(|name| constant(&format!("HANGPOSE_PREDICT_BYTES_{name}")));
+    for points in sizes {
+        for poses in sizes {
+            let given = at_least + point * points as usize + pose * poses as usize;
+            // SAFETY: the limits are there.
+            let needed = unsafe { hangpose_predict_bytes(&hangpose_limits { points, poses, ..NONE }) };
+            assert!(
+                (needed..needed + 4096).contains(&given),
+                "{points} points, {poses} poses: {given} for {needed}"
+            );
+        }
+    }
 }
 
 #[test]
 fn limits_beyond_all_memory_do_not_wrap() {
     let most = u32::MAX;
+    let limits = hangpose_limits {
+        vertices: most,
+        triangles: most,
+        samples: most,
+        voxels: most,
+        points: most,
+        poses: most,
+        ..NONE
+    };
     // SAFETY: the limits are there.
     unsafe {
-        let limits = limits(most, most, most, most, most);
         assert!(hangpose_object_bytes(&limits) > most as usize);
         assert!(hangpose_supporter_bytes(&limits) > most as usize);
         assert!(hangpose_predict_bytes(&limits) > most as usize);

@@ -1,4 +1,6 @@
-//! Writes include/hangpose.h from the crate's source, or with `--check` says whether it is what it should be.
+//! Writes include/hangpose.h from the crate's source and its size queries, or with `--check` says whether it is what it should be.
+
+mod sizes;
 
 use cbindgen::{Builder, Config, DocumentationStyle, Language, Style};
 use std::path::Path;
@@ -34,7 +36,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let line = 1 + found.lines().zip(wanted.lines()).take_while(|(a, b)| a == b).count();
-    eprintln!("include/hangpose.h differs from ffi/src in line {line}; write it anew with: make header");
+    eprintln!("include/hangpose.h differs from the source in line {line}; write it anew with: make header");
     ExitCode::FAILURE
 }
 
@@ -50,7 +52,7 @@ fn header(ffi: &Path) -> String {
         usize_is_size_t: true,
         line_length: 100,
         header: Some(include_str!("top.txt").trim_end().into()),
-        after_includes: Some(include_str!("sizes.txt").trim_end().into()),
+        after_includes: Some(format!("\n{}{}", include_str!("sizes.txt"), sizes::defines().trim_end())),
         ..Config::default()
     };
     let mut builder = Builder::new().with_config(config);
