@@ -29,8 +29,10 @@ using pose = hangpose_pose;
 using limits = hangpose_limits;
 using object_info = hangpose_object_info;
 using object_site = hangpose_object_site;
+using object_contact = hangpose_object_contact;
 using supporter_info = hangpose_supporter_info;
 using supporter_site = hangpose_supporter_site;
+using supporter_contact = hangpose_supporter_contact;
 
 // The constants of the method: fields of hangpose_params.
 struct params : hangpose_params {
@@ -192,6 +194,11 @@ class object {
     return internal::filled<object_site>(
         [&](auto *out, auto *why) { return hangpose_object_get_site(get(), index, out, why); });
   }
+  // Below info()->contacts, the one that catches best first.
+  result<object_contact> contact(std::uint32_t index) const noexcept {
+    return internal::filled<object_contact>(
+        [&](auto *out, auto *why) { return hangpose_object_get_contact(get(), index, out, why); });
+  }
   const hangpose_object *get() const noexcept { return handle_.get(); }
 
  private:
@@ -249,6 +256,11 @@ class supporter {
     return internal::filled<supporter_site>(
         [&](auto *out, auto *why) { return hangpose_supporter_get_site(get(), index, out, why); });
   }
+  // Below info()->contacts.
+  result<supporter_contact> contact(std::uint32_t index) const noexcept {
+    return internal::filled<supporter_contact>(
+        [&](auto *out, auto *why) { return hangpose_supporter_get_contact(get(), index, out, why); });
+  }
   const hangpose_supporter *get() const noexcept { return handle_.get(); }
 
  private:
@@ -256,6 +268,11 @@ class supporter {
   memory memory_;
   internal::handle<hangpose_supporter> handle_;
 };
+
+// Where the supporter bears the object at rest.
+inline view<const hangpose_contact> contacts(const pose &pose) noexcept {
+  return {pose.contacts, pose.contact_count};
+}
 
 // What predict found: poses, best first, or why there are none.
 class prediction : public hangpose_prediction {
@@ -269,7 +286,8 @@ class prediction : public hangpose_prediction {
   const char *reason() const noexcept { return hangpose_stage_string(stage); }
 };
 
-// Matches an object with a supporter, in memory of hangpose_predict_bytes, or HANGPOSE_PREDICT_BYTES.
+// Finds poses in which the object hangs on the supporter, in memory of hangpose_predict_bytes, or
+// HANGPOSE_PREDICT_BYTES.
 inline result<prediction> predict(const object &object, const supporter &supporter, const params &params,
                                   view<pose> poses, const memory &work, monitor *watch = nullptr) noexcept {
   prediction found;
@@ -287,6 +305,9 @@ inline result<prediction> predict(const object &object, const supporter &support
                                   view<pose> poses, monitor *watch = nullptr) noexcept {
   auto within = internal::limits_of(params, nullptr, nullptr);
   if (!within) return within.error();
+  const auto info = supporter.info();
+  if (!info) return info.error();
+  within->points = info->points;
   within->poses = internal::count(poses.size());
   memory work = memory::own(hangpose_predict_bytes(&*within));
   if (work.data() == nullptr) return internal::no_memory();
@@ -313,12 +334,24 @@ inline result<done> sample(const mesh &mesh, view<vec3> points, view<vec3> norma
 
 #if defined(EIGEN_GEOMETRY_MODULE_H) || defined(EIGEN_GEOMETRY_H)
 
-// The motion from object to supporter coordinates.
-inline Eigen::Isometry3f to_eigen(const pose &pose) {
+namespace internal {
+
+inline Eigen::Isometry3f motion(const float (&position)[3], const float (&quaternion)[4]) {
   Eigen::Isometry3f motion = Eigen::Isometry3f::Identity();
-  motion.linear() = Eigen::Quaternionf(Eigen::Map<const Eigen::Vector4f>(pose.quaternion)).toRotationMatrix();
-  motion.translation() = Eigen::Map<const Eigen::Vector3f>(pose.position);
+  motion.linear() = Eigen::Quaternionf(Eigen::Map<const Eigen::Vector4f>(quaternion)).toRotationMatrix();
+  motion.translation() = Eigen::Map<const Eigen::Vector3f>(position);
   return motion;
+}
+
+}  // namespace internal
+
+// The motion from object to supporter coordinates, where the object is let go.
+inline Eigen::Isometry3f to_eigen(const pose &pose) {
+  return internal::motion(pose.position, pose.quaternion);
+}
+// The same where it comes to rest; NaN where it has no rest.
+inline Eigen::Isometry3f rest_to_eigen(const pose &pose) {
+  return internal::motion(pose.rest_position, pose.rest_quaternion);
 }
 
 // Points, normals or triangles in the columns of a matrix, which must outlive the view.
