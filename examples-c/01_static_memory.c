@@ -4,13 +4,13 @@
 
 #include "shapes.h"  // make_ring, make_peg
 
-enum { SAMPLES = 4000, POSES = 10 };
+enum { SAMPLES = 4000, VOXELS = 100000, POSES = 10 };
 
 static float vertices[RING_VERTICES][3], points[PEG_POINTS][3], normals[PEG_POINTS][3];
 static uint32_t triangles[RING_TRIANGLES][3];
-static unsigned char object_memory[HANGPOSE_OBJECT_BYTES(RING_VERTICES, RING_TRIANGLES, SAMPLES)];
+static unsigned char object_memory[HANGPOSE_OBJECT_BYTES(RING_VERTICES, RING_TRIANGLES, SAMPLES, VOXELS)];
 static unsigned char supporter_memory[HANGPOSE_SUPPORTER_BYTES(PEG_POINTS)];
-static unsigned char work_memory[HANGPOSE_PREDICT_BYTES(POSES)];
+static unsigned char work_memory[HANGPOSE_PREDICT_BYTES(PEG_POINTS, POSES)];
 static hangpose_pose poses[POSES];
 static hangpose_detail detail = {.struct_size = sizeof detail};
 
@@ -24,6 +24,7 @@ int main(void) {
   if (hangpose_params_init(&params, sizeof params, HANGPOSE_PROFILE_DEFAULT, HANGPOSE_ABI_VERSION, &detail))
     return fail();
   params.samples = SAMPLES;
+  params.voxels = VOXELS;
 
   make_ring(0.03f, vertices, triangles);
   const hangpose_mesh mesh = {.struct_size = sizeof mesh,
@@ -51,9 +52,12 @@ int main(void) {
     printf("nothing hangs: %s\n", hangpose_stage_string(found.stage));
     return 3;
   }
-  const float *p = poses[0].position, *q = poses[0].quaternion;
+  const hangpose_pose *best = &poses[0];
+  const float *p = best->position, *q = best->quaternion;
   printf(
-      "%u poses; the best has its origin at (%.4f, %.4f, %.4f) m, turned by (%.4f, %.4f, %.4f, %.4f) xyzw\n",
+      "%u poses; let go with its origin at (%.4f, %.4f, %.4f) m, turned by (%.4f, %.4f, %.4f, %.4f) xyzw,\n",
       (unsigned)found.pose_count, p[0], p[1], p[2], q[0], q[1], q[2], q[3]);
+  printf("the ring sinks %.1f mm and hangs with probability %.2f, up to a tilt of %.2f rad\n",
+         1000 * best->sinking, best->probability, best->margin.least_tilt);
   return 0;
 }

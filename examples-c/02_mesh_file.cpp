@@ -38,8 +38,14 @@ int main(int count, char **arguments) {
   for (const hangpose::pose &pose : found->poses) {
     const auto &p = pose.position;
     const auto &q = pose.quaternion;
-    std::printf("position (%.4f, %.4f, %.4f) m, quaternion (%.4f, %.4f, %.4f, %.4f) xyzw, cost %.3f\n", p[0],
-                p[1], p[2], q[0], q[1], q[2], q[3], pose.total);
+    std::printf("let go at (%.4f, %.4f, %.4f) m, turned by (%.4f, %.4f, %.4f, %.4f) xyzw: ", p[0], p[1], p[2],
+                q[0], q[1], q[2], q[3]);
+    std::printf("hangs with probability %.2f, up to a tilt of %.2f rad, on", pose.probability,
+                pose.margin.least_tilt);
+    for (const auto &contact : hangpose::contacts(pose)) {
+      std::printf(" (%.4f, %.4f, %.4f)", contact.position[0], contact.position[1], contact.position[2]);
+    }
+    std::printf("\n");
   }
   return 0;
 }

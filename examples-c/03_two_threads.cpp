@@ -21,7 +21,8 @@ static void work(const hangpose::supporter &peg, const hangpose::params &params,
                  Answer *answers) {
   std::vector<hangpose::vec3> vertices(RING_VERTICES);
   std::vector<hangpose::triangle> triangles(RING_TRIANGLES);
-  std::vector<unsigned char> room(HANGPOSE_OBJECT_BYTES(RING_VERTICES, RING_TRIANGLES, params.samples));
+  std::vector<unsigned char> room(
+      HANGPOSE_OBJECT_BYTES(RING_VERTICES, RING_TRIANGLES, params.samples, params.voxels));
   for (int index = next++; index < OBJECTS; index = next++) {
     Answer &answer = answers[index];
     answer.radius = 0.006f + 0.004f * static_cast<float>(index);
@@ -43,6 +44,7 @@ static void work(const hangpose::supporter &peg, const hangpose::params &params,
 int main() {
   hangpose::params params;
   params.samples = 4000;
+  params.voxels = 100000;
   std::vector<hangpose::vec3> points(PEG_POINTS), normals(PEG_POINTS);
   make_peg(0.004f, reinterpret_cast<float(*)[3]>(points.data()),
            reinterpret_cast<float(*)[3]>(normals.data()));
@@ -61,8 +63,11 @@ int main() {
   int hung = 0;
   for (const Answer &answer : answers) {
     hung += answer.status == HANGPOSE_OK;
-    std::printf("ring of %4.1f mm: %s, cost %.3f\n", static_cast<double>(answer.radius) * 1000,
-                hangpose_status_string(answer.status), static_cast<double>(answer.best.total));
+    std::printf("ring of %4.1f mm: %s", static_cast<double>(answer.radius) * 1000,
+                hangpose_status_string(answer.status));
+    if (answer.best.has_rest)
+      std::printf(", with probability %.2f", static_cast<double>(answer.best.probability));
+    std::printf("\n");
   }
   return hung > 0 ? 0 : 3;
 }

@@ -92,8 +92,10 @@ int main() {
       shared.state.exchange(Shared::OVER) == Shared::ANSWERED && shared.status == HANGPOSE_OK;
   thread.join();
   const auto &p = shared.best.position;
-  std::printf("%d ticks, the latest %.3f ms late; go to (%.4f, %.4f, %.4f) m\n", ticks,
-              std::chrono::duration<double, std::milli>(late).count(), static_cast<double>(p[0]),
-              static_cast<double>(p[1]), static_cast<double>(p[2]));
+  std::printf(
+      "%d ticks, the latest %.3f ms late; let go at (%.4f, %.4f, %.4f) m, which hangs with probability "
+      "%.2f\n",
+      ticks, std::chrono::duration<double, std::milli>(late).count(), static_cast<double>(p[0]),
+      static_cast<double>(p[1]), static_cast<double>(p[2]), static_cast<double>(shared.best.probability));
   return is_done ? 0 : 1;
 }

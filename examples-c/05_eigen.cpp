@@ -29,10 +29,12 @@ int main() {
     std::fprintf(stderr, "%s\n", found ? found->reason() : found.error().message());
     return 1;
   }
-  const Eigen::Isometry3f hanging = hangpose::to_eigen(found->poses[0]);
+  const Eigen::Isometry3f release = hangpose::to_eigen(found->poses[0]);
+  const Eigen::Isometry3f rest = hangpose::rest_to_eigen(found->poses[0]);
   const auto info = ring->info();
-  const Eigen::Vector3f centre_of_mass = hanging * Eigen::Map<const Eigen::Vector3f>(info->centre_of_mass);
-  std::printf("the ring's centre of mass hangs %.1f mm below the peg's axis\n",
-              -1000.0 * static_cast<double>(centre_of_mass.z()));
-  return centre_of_mass.z() < 0 ? 0 : 1;
+  const Eigen::Map<const Eigen::Vector3f> centre_of_mass(info->centre_of_mass);
+  const Eigen::Vector3f before = release * centre_of_mass, after = rest * centre_of_mass;
+  std::printf("let go, the ring's centre of mass sinks %.1f mm, to %.1f mm below the peg's axis\n",
+              1000.0 * static_cast<double>(before.z() - after.z()), -1000.0 * static_cast<double>(after.z()));
+  return after.z() < 0 ? 0 : 1;
 }

@@ -6,13 +6,13 @@
 
 #include "shapes.h"
 
-enum { SAMPLES = 4000, POSES = 3 };
+enum { SAMPLES = 4000, VOXELS = 100000, POSES = 3 };
 static float vertices[RING_VERTICES][3], points[PEG_POINTS][3], normals[PEG_POINTS][3];
 static uint32_t triangles[RING_TRIANGLES][3];
-static unsigned char object_memory[HANGPOSE_OBJECT_BYTES(RING_VERTICES, RING_TRIANGLES, SAMPLES)];
+static unsigned char object_memory[HANGPOSE_OBJECT_BYTES(RING_VERTICES, RING_TRIANGLES, SAMPLES, VOXELS)];
 static unsigned char supporter_memory[HANGPOSE_SUPPORTER_BYTES(PEG_POINTS)];
 static unsigned char other_memory[sizeof supporter_memory];
-static unsigned char work[HANGPOSE_PREDICT_BYTES(POSES)], other_work[sizeof work];
+static unsigned char work[HANGPOSE_PREDICT_BYTES(PEG_POINTS, POSES)], other_work[sizeof work];
 static hangpose_params params, changed;
 static hangpose_mesh mesh = {.struct_size = sizeof mesh,
                              .vertices = *vertices,
@@ -67,7 +67,7 @@ static void *keep_busy(void *is_over) {
 
 int main(void) {
   hangpose_monitor monitor;
-  hangpose_object_site site = {.struct_size = sizeof site};
+  hangpose_object_contact contact = {.struct_size = sizeof contact};
   make_ring(0.03f, vertices, triangles);
   make_peg(0.004f, points, normals);
 
@@ -79,6 +79,7 @@ int main(void) {
   expect(HANGPOSE_OK, init(&params, HANGPOSE_PROFILE_DEFAULT, HANGPOSE_ABI_VERSION),
          "params as they should be");
   params.samples = SAMPLES;
+  params.voxels = VOXELS;
 
   changed = params;
   changed.radius_ratio = NAN;
@@ -122,8 +123,8 @@ int main(void) {
   expect(HANGPOSE_OK,
          hangpose_object_create(object_memory, sizeof object_memory, &mesh, &params, NULL, &ring, &detail),
          "an object as it should be");
-  expect(HANGPOSE_ERROR_INDEX, hangpose_object_get_site(ring, 1000, &site, &detail),
-         "a site that does not exist");
+  expect(HANGPOSE_ERROR_INDEX, hangpose_object_get_contact(ring, 1000, &contact, &detail),
+         "a contact that does not exist");
 
   expect(HANGPOSE_OK,
          hangpose_supporter_create(supporter_memory, sizeof supporter_memory, &cloud, &params, NULL, &peg,
@@ -156,6 +157,12 @@ int main(void) {
   hangpose_monitor_cancel(&monitor);
   pthread_join(thread, NULL);
   expect(HANGPOSE_OK, predict(peg, work, POSES, NULL), "a prediction as it should be");
+
+  init(&changed, HANGPOSE_PROFILE_PAPER, HANGPOSE_ABI_VERSION);
+  changed.samples = SAMPLES;
+  hangpose_object_create(object_memory, sizeof object_memory, &mesh, &changed, NULL, &ring, &detail);
+  expect(HANGPOSE_ERROR_NO_DISTANCE_FIELD, predict(peg, work, POSES, NULL),
+         "an object that was analysed with other params");
   printf("%d of these were not as expected\n", surprises);
   return surprises;
 }
