@@ -1,7 +1,7 @@
 //! `cargo bench -p hangpose-ffi`: what a call through C takes over the same call in Rust, on the samples. Calls take
 //! turns, so that both meet the same machine, and the median of the ratios counts. Fails above 1 %.
 
-use hangpose::hanging::{HangingPose, Object, predict};
+use hangpose::hanging::{HangingPose, Object, predict, predict_bytes};
 use hangpose::memory::Limits;
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files};
 use hangpose_ffi::*;
@@ -26,14 +26,17 @@ fn main() -> ExitCode {
     let object = analyze_object(&mesh, &params, &mut object_memory, &monitor).expect("an object");
     let supporter = analyze_supporter(&cloud, &params, &mut supporter_memory, &monitor).expect("a supporter");
     let mut poses = [HangingPose::default(); POSES];
-    let mut rust_predict = || {
-        black_box(predict(&object, &supporter, &params, &mut poses, &monitor).expect("a prediction"));
-    };
     let limits = Limits {
         vertices: mesh.vertices().len(),
         triangles: mesh.triangles().len(),
         samples: params.samples,
-        points: 0,
+        voxels: params.voxels,
+        points: cloud.points().len(),
+    };
+    let mut work = vec![0; predict_bytes(&limits)];
+    let mut rust_predict = || {
+        let found = predict(&object, &supporter, &params, &mut poses, &mut work, &monitor);
+        black_box(found.expect("a prediction"));
     };
     let mut memory = vec![0; Object::bytes(&limits)];
     let mut rust_analyze = || {

@@ -2,12 +2,13 @@
 //! `cargo run -p hangpose-ffi --example pairs -- folder`.
 //!
 //! Each file is little-endian words of 32 bits: profile; vertices, triangles, points; the three arrays and the normals;
-//! then what is expected: status, stage, pairs, fitting, clear; poses; and for each pose what follows `struct_size` in
-//! `hangpose_pose`.
+//! then what is expected: status, poses, and from `hangpose_prediction` the stage and the counts; and for each pose what
+//! follows `struct_size` in `hangpose_pose`.
 
-use hangpose::geometry::{Cloud, Mesh};
-use hangpose::hanging::{HangingPose, predict};
-use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files};
+use hangpose::geometry::{Cloud, Mesh, Pose};
+use hangpose::hanging::{HangingPose, MatchingCounts, SettlingCounts};
+use hangpose::mechanics::{DIRECTIONS, MAX_CONTACTS};
+use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files, predict_poses};
 use std::error::Error;
 use std::f32::consts::TAU;
 use std::path::Path;
@@ -67,7 +68,7 @@ fn words(thing: &Thing, support: &Support, profile: u32) -> Result<Vec<u32>, Box
     let object = analyze_object(&mesh, &params, &mut memory, &monitor)?;
     let supporter = analyze_supporter(&cloud, &params, &mut more_memory, &monitor)?;
     let mut poses = [HangingPose::default(); CAPACITY];
-    let found = predict(&object, &supporter, &params, &mut poses, &monitor)?;
+    let found = predict_poses(&object, &supporter, &params, &mut poses, &monitor)?;
 
     let floats = |rows: &[[f32; 3]]| rows.iter().flatten().map(|x| x.to_bits()).collect::<Vec<_>>();
     let (vertices, triangles) = (&thing.vertices, &thing.triangles);
@@ -76,23 +77,58 @@ fn words(thing: &Thing, support: &Support, profile: u32) -> Result<Vec<u32>, Box
     words.extend(triangles.iter().flatten());
     words.extend(floats(&support.points));
     words.extend(floats(&support.normals));
-    let matching = found.counts.matching;
     words.extend([
         u32::from(found.poses.is_empty()),
-        found.rejection.map_or(0, |rejection| rejection.stage as u32 + 1),
-        matching.pairs as u32,
-        matching.fitting as u32,
-        matching.clear as u32,
         found.poses.len() as u32,
+        found.rejection.map_or(0, |rejection| rejection.stage as u32 + 1),
     ]);
-    for pose in found.poses {
-        words.extend([pose.object_site, pose.support_site, u32::from(pose.is_reversed)]);
-        words.extend(pose.pose.translation.vector.iter().map(|x| x.to_bits()));
-        words.extend(pose.pose.rotation.coords.iter().map(|x| x.to_bits()));
-        words.push(pose.cost.collision);
-        words.extend([pose.cost.boundary, pose.cost.contact_area, pose.cost.total].map(f32::to_bits));
-    }
+    let MatchingCounts { pairs, fitting, clear } = found.counts.matching;
+    words.extend([pairs, fitting, clear].map(|count| count as u32));
+    let SettlingCounts { candidates, clear, released, rotated_off, slid_off, moving, at_rest, firm } =
+        found.counts.settling;
+    let settling = [candidates, clear, released, rotated_off, slid_off, moving, at_rest, firm];
+    words.extend(settling.map(|count| count as u32));
+    found.poses.iter().for_each(|pose| words.extend(pose_words(pose)));
     Ok(words)
+}
+
+fn pose_words(hanging: &HangingPose) -> Vec<u32> {
+    let bits = |numbers: &[f32]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    let pose = |pose: &Pose| {
+        [bits(pose.translation.vector.as_slice()), bits(pose.rotation.coords.as_slice())].concat()
+    };
+    let mut words = pose(&hanging.pose);
+    words.push(u32::from(hanging.rest.is_some()));
+    if let Some(rest) = &hanging.rest {
+        words.push(rest.probability.to_bits());
+        words.extend(pose(&rest.pose));
+        words.extend(bits(&[rest.sinking, rest.clearance]));
+        let margin = &rest.margin;
+        words.extend(bits(&margin.tilts));
+        words.extend(bits(&[margin.least_tilt(), margin.escape_rise, margin.escape_ratio]));
+        words.extend(bits(&[margin.knock_speed, margin.centre_of_mass_radius]));
+        words.push(rest.contacts().len() as u32);
+        for place in 0..MAX_CONTACTS {
+            let contact = rest.contacts().get(place).copied().unwrap_or_default();
+            words.extend(bits(contact.position.coords.as_slice()));
+            words.extend(bits(contact.normal.as_slice()));
+            words.push(contact.force.to_bits());
+        }
+    } else {
+        words.extend([f32::NAN.to_bits(); 1 + 7 + 2 + DIRECTIONS + 5]);
+        words.extend([0; 1 + 7 * MAX_CONTACTS]);
+    }
+    words.push(u32::from(hanging.matched.is_some()));
+    if let Some(matched) = &hanging.matched {
+        let cost = &matched.cost;
+        words.extend([matched.object_site, matched.support_site]);
+        words.extend([u32::from(matched.is_reversed), cost.collision]);
+        words.extend(bits(&[cost.boundary, cost.contact_area, cost.total]));
+    } else {
+        words.extend([u32::MAX, u32::MAX, 0, 0]);
+        words.extend([f32::NAN.to_bits(); 3]);
+    }
+    words
 }
 
 /// A ring around z.

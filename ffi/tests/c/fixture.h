@@ -9,7 +9,8 @@
 
 #include "shapes.h"
 
-enum { SAMPLES = 2000, POSES = 4, GUARD = 64, MARK = 0xA5 };
+// Small, since it runs under valgrind: of the peg, 17 mm.
+enum { SAMPLES = 300, VOXELS = 5000, POINTS = 500, POSES = 4, GUARD = 64, MARK = 0xA5 };
 
 static float vertices[RING_VERTICES][3], points[PEG_POINTS][3], normals[PEG_POINTS][3];
 static uint32_t triangles[RING_TRIANGLES][3];
@@ -23,6 +24,7 @@ static unsigned char *object_memory, *supporter_memory, *work;
 static hangpose_object *object;
 static hangpose_supporter *supporter;
 static hangpose_pose right[POSES];
+static uint32_t right_count;
 static int checks, failures;
 
 static void check(int is_right, const char *what, int line) {
@@ -71,14 +73,16 @@ static int is_unharmed(void) {
   hangpose_prediction found = {.struct_size = sizeof found};
   hangpose_status status = hangpose_predict(object, supporter, &params, work, predict_size, NULL, poses,
                                             sizeof *poses, POSES, &found, &detail);
-  return status == HANGPOSE_OK && found.pose_count == POSES && memcmp(poses, right, sizeof poses) == 0;
+  return status == HANGPOSE_OK && found.pose_count == right_count &&
+         memcmp(poses, right, right_count * sizeof *poses) == 0;
 }
 
 static void set_up(void) {
-  CHECK(hangpose_params_init(&params, sizeof params, HANGPOSE_PROFILE_PAPER, HANGPOSE_ABI_VERSION, &detail) ==
-        HANGPOSE_OK);
+  CHECK(hangpose_params_init(&params, sizeof params, HANGPOSE_PROFILE_DEFAULT, HANGPOSE_ABI_VERSION,
+                             &detail) == HANGPOSE_OK);
   params.samples = SAMPLES;
-  params.object_directions = 10;
+  params.voxels = VOXELS;
+  params.settle_attempts = 2;
   make_ring(0.03f, vertices, triangles);
   make_peg(0.004f, points, normals);
   mesh = (hangpose_mesh){.struct_size = sizeof mesh,
@@ -87,7 +91,7 @@ static void set_up(void) {
                          .triangles = *triangles,
                          .triangle_count = RING_TRIANGLES};
   cloud = (hangpose_cloud){
-      .struct_size = sizeof cloud, .points = *points, .normals = *normals, .point_count = PEG_POINTS};
+      .struct_size = sizeof cloud, .points = *points, .normals = *normals, .point_count = POINTS};
   limits.struct_size = sizeof limits;
   CHECK(hangpose_limits_of(&params, &mesh, &cloud, &limits, &detail) == HANGPOSE_OK);
   limits.poses = POSES;
@@ -104,6 +108,7 @@ static void set_up(void) {
   hangpose_prediction found = {.struct_size = sizeof found};
   CHECK(hangpose_predict(object, supporter, &params, work, predict_size, NULL, right, sizeof *right, POSES,
                          &found, &detail) == HANGPOSE_OK);
+  right_count = found.pose_count;
   CHECK(is_unharmed());
 }
 

@@ -46,10 +46,13 @@ static int compare(const uint32_t *words) {
     return -1;
   const hangpose_status status = hangpose_predict(object, supporter, &params, memory[2], sizes[2], NULL,
                                                   poses, sizeof *poses, CAPACITY, &found, &detail);
-  const uint32_t answer[6] = {(uint32_t)status, found.stage, found.pairs,
-                              found.fitting,    found.clear, found.pose_count};
+  const uint32_t answer[] = {(uint32_t)status,           found.pose_count,        found.stage,
+                             found.matching_pairs,       found.matching_fitting,  found.matching_clear,
+                             found.settling_candidates,  found.settling_clear,    found.settling_released,
+                             found.settling_rotated_off, found.settling_slid_off, found.settling_moving,
+                             found.settling_at_rest,     found.settling_firm};
   int is_equal = memcmp(answer, next, sizeof answer) == 0;
-  next += 6;
+  next += sizeof answer / 4;
   const size_t pose_words = sizeof(hangpose_pose) / 4 - 1;
   for (uint32_t i = 0; is_equal && i < found.pose_count; ++i, next += pose_words)
     is_equal = memcmp((const uint32_t *)&poses[i] + 1, next, 4 * pose_words) == 0;

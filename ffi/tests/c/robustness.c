@@ -35,9 +35,9 @@ static void sizes_and_alignment(void) {
     REFUSED(hangpose_mesh_sample(&mesh, 0, memory, sizes[i], *points, *normals, 10, &detail));
     release(memory, 64, 0);
   }
-  CHECK(HANGPOSE_OBJECT_BYTES(RING_VERTICES, RING_TRIANGLES, SAMPLES) >= object_size);
-  CHECK(HANGPOSE_SUPPORTER_BYTES(PEG_POINTS) >= supporter_size);
-  CHECK(HANGPOSE_PREDICT_BYTES(POSES) >= predict_size);
+  CHECK(HANGPOSE_OBJECT_BYTES(RING_VERTICES, RING_TRIANGLES, SAMPLES, VOXELS) >= object_size);
+  CHECK(HANGPOSE_SUPPORTER_BYTES(POINTS) >= supporter_size);
+  CHECK(HANGPOSE_PREDICT_BYTES(POINTS, POSES) >= predict_size);
 }
 
 static void null_and_misaligned(void) {
@@ -58,6 +58,8 @@ static void null_and_misaligned(void) {
   hangpose_supporter_info supporter_info = {.struct_size = sizeof supporter_info};
   hangpose_object_site object_site = {.struct_size = sizeof object_site};
   hangpose_supporter_site supporter_site = {.struct_size = sizeof supporter_site};
+  hangpose_object_contact object_contact = {.struct_size = sizeof object_contact};
+  hangpose_supporter_contact supporter_contact = {.struct_size = sizeof supporter_contact};
   hangpose_object *o;
   hangpose_supporter *s;
   hangpose_monitor monitor;
@@ -87,11 +89,17 @@ static void null_and_misaligned(void) {
     REFUSED(hangpose_object_get_site(bad[i], 0, &object_site, &detail));
     REFUSED(hangpose_object_get_site(object, 0, bad[i], &detail));
     REFUSED(hangpose_object_get_site(object, UINT32_MAX, &object_site, &detail));
+    REFUSED(hangpose_object_get_contact(bad[i], 0, &object_contact, &detail));
+    REFUSED(hangpose_object_get_contact(object, 0, bad[i], &detail));
+    REFUSED(hangpose_object_get_contact(object, UINT32_MAX, &object_contact, &detail));
     REFUSED(hangpose_supporter_get_info(bad[i], &supporter_info, &detail));
     REFUSED(hangpose_supporter_get_info(supporter, bad[i], &detail));
     REFUSED(hangpose_supporter_get_site(bad[i], 0, &supporter_site, &detail));
     REFUSED(hangpose_supporter_get_site(supporter, 0, bad[i], &detail));
     REFUSED(hangpose_supporter_get_site(supporter, UINT32_MAX, &supporter_site, &detail));
+    REFUSED(hangpose_supporter_get_contact(bad[i], 0, &supporter_contact, &detail));
+    REFUSED(hangpose_supporter_get_contact(supporter, 0, bad[i], &detail));
+    REFUSED(hangpose_supporter_get_contact(supporter, UINT32_MAX, &supporter_contact, &detail));
     REFUSED(predict(bad[i], supporter, &params));
     REFUSED(predict(object, bad[i], &params));
     REFUSED(predict(object, supporter, bad[i]));
@@ -144,6 +152,8 @@ static void struct_sizes(void) {
     hangpose_supporter_info supporter_info = {.struct_size = sizes[i]};
     hangpose_object_site object_site = {.struct_size = sizes[i]};
     hangpose_supporter_site supporter_site = {.struct_size = sizes[i]};
+    hangpose_object_contact object_contact = {.struct_size = sizes[i]};
+    hangpose_supporter_contact supporter_contact = {.struct_size = sizes[i]};
     hangpose_pose pose;
     m.struct_size = c.struct_size = p.struct_size = l.struct_size = sizes[i];
     REFUSED(hangpose_params_init(&p, sizes[i], HANGPOSE_PROFILE_DEFAULT, HANGPOSE_ABI_VERSION, &detail));
@@ -160,6 +170,8 @@ static void struct_sizes(void) {
     REFUSED(hangpose_supporter_get_info(supporter, &supporter_info, &detail));
     REFUSED(hangpose_object_get_site(object, 0, &object_site, &detail));
     REFUSED(hangpose_supporter_get_site(supporter, 0, &supporter_site, &detail));
+    REFUSED(hangpose_object_get_contact(object, 0, &object_contact, &detail));
+    REFUSED(hangpose_supporter_get_contact(supporter, 0, &supporter_contact, &detail));
     REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose, 1,
                              &found, &detail));
     REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizes[i], 1, &found,
@@ -325,17 +337,43 @@ static void handles(void) {
   CHECK(is_unharmed());
 }
 
+// Models that were analysed with other params than the prediction's.
+static void other_params(void) {
+  hangpose_params paper = params;
+  paper.candidates = HANGPOSE_CANDIDATES_SITES;
+  paper.settle = 0;
+  paper.voxels = 0;
+  paper.object_directions = 10;
+  unsigned char *memory = guarded(object_size, 0), *other = guarded(supporter_size, 0);
+  hangpose_object *o;
+  hangpose_supporter *s;
+  CHECK(hangpose_object_create(memory, object_size, &mesh, &paper, NULL, &o, &detail) == HANGPOSE_OK);
+  CHECK(hangpose_supporter_create(other, supporter_size, &cloud, &paper, NULL, &s, &detail) == HANGPOSE_OK);
+  CHECK(predict(o, s, &paper) >= 0);
+  CHECK(predict(o, supporter, &params) == HANGPOSE_ERROR_NO_DISTANCE_FIELD);
+  CHECK(predict(o, supporter, &paper) >= 0);
+  CHECK(predict(object, s, &params) >= 0);
+  CHECK(predict(object, s, &paper) >= 0);
+  paper.settle = 1;
+  paper.voxels = VOXELS;
+  CHECK(predict(object, s, &paper) >= 0);
+  CHECK(predict(o, s, &paper) == HANGPOSE_ERROR_NO_DISTANCE_FIELD);
+  release(memory, object_size, 0);
+  release(other, supporter_size, 0);
+  CHECK(is_unharmed());
+}
+
 static void updates(void) {
   hangpose_monitor monitor;
   hangpose_cloud more = cloud;
-  more.point_count = PEG_POINTS + 1;
+  more.point_count = POINTS + 1;
   CHECK(hangpose_supporter_update(supporter, &more, &params, NULL, &detail) == HANGPOSE_ERROR_MEMORY);
   CHECK(is_unharmed());
   hangpose_monitor_init(&monitor, sizeof monitor, HANGPOSE_NO_WORK_LIMIT, NULL);
   hangpose_monitor_cancel(&monitor);
   CHECK(hangpose_supporter_update(supporter, &cloud, &params, &monitor, &detail) == HANGPOSE_CANCELLED);
   CHECK(predict(object, supporter, &params) == HANGPOSE_ERROR_EMPTY);
-  more.point_count = PEG_POINTS / 2;
+  more.point_count = POINTS / 2;
   CHECK(hangpose_supporter_update(supporter, &more, &params, NULL, &detail) == HANGPOSE_OK);
   CHECK(predict(object, supporter, &params) >= 0);
   CHECK(hangpose_supporter_update(supporter, &cloud, &params, NULL, &detail) == HANGPOSE_OK);
@@ -352,9 +390,9 @@ static void *predict_again_and_again(void *tally) {
     hangpose_detail said = {.struct_size = sizeof said};
     const hangpose_status status = hangpose_predict(object, supporter, &params, mine, predict_size, &shared,
                                                     poses, sizeof *poses, POSES, &found, &said);
-    nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);  // so that an update gets its turn
+    nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);  // so that an update gets its turn
     if (status == HANGPOSE_OK) ++((int *)tally)[0];
-    if (status == HANGPOSE_OK && memcmp(poses, right, sizeof poses) != 0) ++((int *)tally)[1];
+    if (status == HANGPOSE_OK && memcmp(poses, right, right_count * sizeof *poses) != 0) ++((int *)tally)[1];
     if (status != HANGPOSE_OK && status != HANGPOSE_ERROR_BUSY) ++((int *)tally)[1];
   }
   free(mine - GUARD - 3);
@@ -365,7 +403,7 @@ static void threads(void) {
   int tallies[2][2] = {{0, 0}, {0, 0}}, updated = 0;
   hangpose_monitor_init(&shared, sizeof shared, HANGPOSE_NO_WORK_LIMIT, NULL);
   for (int i = 0; i < 2; ++i) pthread_create(&both[i], NULL, predict_again_and_again, tallies[i]);
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 200; ++i) {
     const float progress = hangpose_monitor_progress(&shared);
     CHECK(progress >= 0.0f && progress <= 1.0f);
     const hangpose_status status = hangpose_supporter_update(supporter, &cloud, &params, NULL, &detail);
@@ -387,6 +425,7 @@ int main(void) {
   counts_and_numbers();
   overlaps();
   handles();
+  other_params();
   updates();
   threads();
   CHECK(hangpose_status_string(INT32_MIN) != NULL && hangpose_stage_string(UINT32_MAX) != NULL);

@@ -25,6 +25,7 @@ int main() {
            reinterpret_cast<float(*)[3]>(normals.data()));
   hangpose::params params;
   params.samples = 3000;
+  params.voxels = 20000;
 
   // Nothing, in its several forms.
   const std::vector<hangpose::vec3> none;
@@ -47,18 +48,20 @@ int main() {
   auto ring = hangpose::object::create({vertices, triangles}, params);
   CHECK(ring && ring->info() && ring->info()->is_closed == 1);
   hangpose::object moved = *std::move(ring);
-  CHECK(moved.get() != nullptr && moved.site(0) && !moved.site(1000));
+  CHECK(moved.get() != nullptr && moved.contact(0) && !moved.contact(1000) && !moved.site(0));
   CHECK(ring->get() == nullptr && !ring->info() && ring->info().error().status() == HANGPOSE_ERROR_NULL);
   std::vector<unsigned char> room(HANGPOSE_SUPPORTER_BYTES(PEG_POINTS));
   auto peg =
       hangpose::supporter::create({points, normals}, params, hangpose::memory(room.data(), room.size()));
-  CHECK(peg && peg->info()->points == PEG_POINTS && peg->site(0)->support_radius > 0.0f);
+  CHECK(peg && peg->info()->points == PEG_POINTS && peg->contact(0)->normal[2] > 0.0f);
   auto small = hangpose::supporter::create({points, normals}, params, hangpose::memory(room.data(), 100));
   CHECK(!small && small.error().status() == HANGPOSE_ERROR_MEMORY);
 
   hangpose::pose poses[3];
   auto found = hangpose::predict(moved, *peg, params, poses);
-  CHECK(found && found->status == HANGPOSE_OK && found->poses.size() == 3 && found->poses.data() == poses);
+  CHECK(found && found->status == HANGPOSE_OK && found->poses.size() >= 1 && found->poses.data() == poses);
+  CHECK(found->poses[0].has_rest == 1 && found->poses[0].probability >= params.min_probability);
+  CHECK(!hangpose::contacts(found->poses[0]).empty() && found->poses[0].is_matched == 0);
   auto nothing = hangpose::predict(moved, *peg, params, hangpose::view<hangpose::pose>());
   CHECK(!nothing);
 
