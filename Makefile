@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench tables peer samples clean
+.PHONY: help setup demo test bench tables peer lib install deb samples header clean
 
 help:
 	@echo "make demo     hang the sample mug on the sample hook, let go and draw it"
@@ -7,7 +7,11 @@ help:
 	@echo "make bench    how long it takes, in how much memory"
 	@echo "make peer     the same beside another implementation: PEER=peer.py [MESHES=folder]"
 	@echo "make tables   drop 600 pairs in two engines: docs/RESULTS.md [MESHES=folder adds real ones]"
+	@echo "make lib      libhangpose.a and libhangpose.so for C and C++: build/link"
+	@echo "make install  put them where compilers look: [PREFIX=/usr/local] [DESTDIR=...]"
+	@echo "make deb      the same as a Debian package: build/libhangpose-dev_*.deb"
 	@echo "make samples  write samples/ anew"
+	@echo "make header   write include/hangpose.h anew from ffi/"
 	@echo "make setup    install what is missing"
 	@echo "make clean    remove what was built"
 
@@ -26,7 +30,9 @@ test: setup
 	cargo test --workspace
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
 	cargo run --release -p hangpose --example samples -- --check
+	cargo run -p hangpose-ffi --example header -- --check
 	scripts/bare-metal.sh
+	scripts/link.sh
 
 bench: setup
 	cargo bench --workspace
@@ -45,6 +51,28 @@ peer: setup $(peer_python)
 	cargo build --release -p hangpose
 	$(peer_python) bench/peer.py --peer $(PEER) time samples/mug.obj samples/mug_tree.ply
 	$(if $(MESHES),$(peer_python) bench/peer.py --peer $(PEER) agree --meshes $(MESHES))
+
+header:
+	cargo run -p hangpose-ffi --example header
+
+PREFIX ?= /usr/local
+cargo_dir = $(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/link
+
+# Not `setup`: that is for those who test hangpose. This takes cargo, cmake and a C compiler.
+lib:
+	@for tool in cargo cmake cc; do command -v $$tool >/dev/null || { echo "make lib needs $$tool" >&2; exit 1; }; done
+	cmake -S . -B build/link -DCMAKE_INSTALL_PREFIX=$(PREFIX) -DHANGPOSE_CARGO_DIR=$(cargo_dir)
+	cmake --build build/link
+
+# Builds nothing that is there, so that it may be run by another user: make lib && sudo make install.
+install:
+	@test -e build/link/libhangpose.a || $(MAKE) lib
+	cmake --install build/link --prefix $(PREFIX)
+
+deb:
+	cmake -S . -B build/deb -DCMAKE_INSTALL_PREFIX=/usr -DHANGPOSE_CARGO_DIR=$(cargo_dir)
+	cmake --build build/deb
+	cd build/deb && cpack -B $(CURDIR)/build
 
 samples:
 	cargo run --release -p hangpose --example samples

@@ -31,6 +31,14 @@ command -v c++ >/dev/null || missing+=(g++)
 command -v pkg-config >/dev/null || missing+=(pkg-config)
 pkg-config --exists bullet 2>/dev/null || missing+=(libbullet-dev)
 pkg-config --exists ode 2>/dev/null || missing+=(libode-dev)
+# What the C library is built and packaged with, and the callers that it is tried with.
+command -v cmake >/dev/null || missing+=(cmake)
+command -v make >/dev/null || missing+=(make)
+command -v clang++ >/dev/null || missing+=(clang)
+command -v valgrind >/dev/null || missing+=(valgrind libc6-dbg)
+command -v dpkg-shlibdeps >/dev/null || missing+=(dpkg-dev)
+command -v file >/dev/null || missing+=(file)
+pkg-config --exists eigen3 2>/dev/null || missing+=(libeigen3-dev)
 
 if command -v rustup >/dev/null; then
     have=$(rustup component list --installed)

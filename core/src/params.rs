@@ -236,7 +236,7 @@ impl Default for Params {
 pub(crate) const MAX_VOXELS: usize = 100_000_000;
 
 /// More samples than this serve no object that a robot can hold.
-pub(crate) const MAX_SAMPLES: usize = 500_000;
+pub const MAX_SAMPLES: usize = 500_000;
 /// Half a degree is finer than any of the data.
 pub(crate) const MAX_DIRECTIONS: usize = 720;
 

@@ -76,8 +76,9 @@ impl core::fmt::Display for MeshError {
 
 impl core::error::Error for MeshError {}
 
-/// Counts of vertices, triangles and points stay below this, so that a `u32` can index what is built on them.
-pub(crate) const MAX_COUNT: usize = 1 << 28;
+/// The most vertices, triangles or points that a mesh or a cloud may have, so that a `u32` can index what is built on
+/// them.
+pub const MAX_COUNT: usize = 1 << 28;
 
 impl<'a> Mesh<'a> {
     /// Checks `vertices` (metres) and `triangles` (indices into them).

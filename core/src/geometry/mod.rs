@@ -23,7 +23,7 @@ pub use distance_field::DistanceField;
 pub(crate) use eigen::least_eigenvector;
 pub(crate) use linkage::linked_cluster;
 pub use mass::MassProperties;
-pub use mesh::{Mesh, MeshError};
+pub use mesh::{MAX_COUNT, Mesh, MeshError};
 pub use point_tree::{Neighbour, PointTree};
 pub use surface::Surface;
 pub(crate) use triangle::scaled_normal;

@@ -4,7 +4,7 @@
 use crate::geometry::{Mesh, Point, Vector};
 use crate::heap::Heap;
 use crate::memory::{Arena, OutOfMemory, array_bytes, model_bytes};
-use crate::params::MAX_SAMPLES;
+pub use crate::params::MAX_SAMPLES;
 use crate::random::Random;
 
 /// Candidates drawn for each sample that is kept: `M / N`. Yuksel's 5 spreads the samples to 0.70 of the best

@@ -1,0 +1,61 @@
+//! The constants behind `HANGPOSE_OBJECT_BYTES` and its like, from the queries.
+
+use hangpose_ffi::{
+    hangpose_limits, hangpose_object_bytes, hangpose_predict_bytes, hangpose_supporter_bytes,
+};
+
+type Query = unsafe extern "C" fn(*const hangpose_limits) -> usize;
+/// The name of what is counted, and where its count is.
+type Field = (&'static str, fn(&mut hangpose_limits) -> &mut u32);
+
+const QUERIES: [(&str, Query, &[Field]); 3] = [
+    (
+        "OBJECT",
+        hangpose_object_bytes,
+        &[
+            ("VERTEX", |limits| &mut limits.vertices),
+            ("TRIANGLE", |limits| &mut limits.triangles),
+            ("SAMPLE", |limits| &mut limits.samples),
+            ("VOXEL", |limits| &mut limits.voxels),
+        ],
+    ),
+    ("SUPPORTER", hangpose_supporter_bytes, &[("POINT", |limits| &mut limits.points)]),
+    (
+        "PREDICT",
+        hangpose_predict_bytes,
+        &[("POINT", |limits| &mut limits.points), ("POSE", |limits| &mut limits.poses)],
+    ),
+];
+
+/// As the header has them.
+pub(super) fn defines() -> String {
+    let mut text = String::new();
+    for (name, query, fields) in QUERIES {
+        let none = hangpose_limits {
+            struct_size: size_of::<hangpose_limits>() as u32,
+            vertices: 0,
+            triangles: 0,
+            samples: 0,
+            voxels: 0,
+            points: 0,
+            poses: 0,
+        };
+        // SAFETY: the limits are there.
+        let bytes = |limits: hangpose_limits| unsafe { query(&limits) };
+        // No query gives more for all of its limits together than for each alone, added up; rounding to whole arrays
+        // adds less than a page.
+        let at_least = bytes(none).next_multiple_of(1024) + 1024;
+        text += &format!("#define HANGPOSE_{name}_BYTES_AT_LEAST {at_least}\n");
+        for (each, field) in fields {
+            const MANY: u32 = 10_000_000;
+            let with = |count| {
+                let mut limits = none;
+                *field(&mut limits) = count;
+                bytes(limits)
+            };
+            let slope = (with(2 * MANY) - with(MANY)).div_ceil(MANY as usize);
+            text += &format!("#define HANGPOSE_{name}_BYTES_EACH_{each} {slope}\n");
+        }
+    }
+    text
+}

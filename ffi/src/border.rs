@@ -1,0 +1,248 @@
+//! From pointers to references: everything that C hands over passes here, and is checked or vouched for.
+//!
+//! What can be known is checked: null, alignment, `struct_size`, counts, overlaps. What cannot, the caller vouches for,
+//! as the top of the header says: that a pointer that is not null leads to what its type says, as many of it as the
+//! count says, and that no one else writes there during the call.
+
+use crate::detail::hangpose_detail;
+use crate::failure::Failure;
+use crate::status::hangpose_status;
+
+/// A struct that C fills in or reads.
+///
+/// # Safety
+///
+/// It is `repr(C)`, its first field is the `u32` `struct_size`, every bit pattern is a value, and `NAME` is what the
+/// header calls a pointer to it.
+pub(crate) unsafe trait Public: Copy {
+    const NAME: &'static str;
+}
+
+/// Whether `pointer` may lead to a `T`.
+pub(crate) fn check<T>(argument: &'static str, pointer: *const T) -> Result<(), Failure> {
+    if pointer.is_null() {
+        Err(Failure::Null { argument })
+    } else if !pointer.is_aligned() {
+        Err(Failure::Misaligned { argument, alignment: align_of::<T>() })
+    } else {
+        Ok(())
+    }
+}
+
+/// Whether `pointer` leads to a `T` of this header.
+pub(crate) fn check_public<T: Public>(pointer: *const T) -> Result<(), Failure> {
+    check(T::NAME, pointer)?;
+    // SAFETY: not null and aligned; that a struct with a `struct_size` begins here, whatever its size, the caller
+    // vouches for. No more is read than this field.
+    let given = unsafe { pointer.cast::<u32>().read() } as usize;
+    check_size::<T>(given)
+}
+
+/// Whether `given` is the size of a `T` of this header.
+pub(crate) fn check_size<T: Public>(given: usize) -> Result<(), Failure> {
+    let expected = size_of::<T>();
+    if given == expected { Ok(()) } else { Err(Failure::StructSize { argument: T::NAME, given, expected }) }
+}
+
+/// A struct that C filled in.
+///
+/// # Safety
+///
+/// What the caller vouches for, see the top of this file.
+pub(crate) unsafe fn input<'a, T: Public>(pointer: *const T) -> Result<&'a T, Failure> {
+    check_public(pointer)?;
+    // SAFETY: not null, aligned and of the right size; every bit pattern is a `T`. The caller vouches for the rest.
+    Ok(unsafe { &*pointer })
+}
+
+/// A struct that C filled in, or null.
+///
+/// # Safety
+///
+/// What the caller vouches for, see the top of this file.
+pub(crate) unsafe fn optional_input<'a, T: Public>(pointer: *const T) -> Result<Option<&'a T>, Failure> {
+    // SAFETY: as this function's.
+    if pointer.is_null() { Ok(None) } else { unsafe { input(pointer) }.map(Some) }
+}
+
+/// A struct for the answer.
+///
+/// # Safety
+///
+/// What the caller vouches for, see the top of this file; and that it is kept apart from what the call reads.
+pub(crate) unsafe fn output<'a, T: Public>(pointer: *mut T) -> Result<&'a mut T, Failure> {
+    check_public(pointer)?;
+    // SAFETY: not null, aligned and of the right size; every bit pattern is a `T`. The caller vouches for the rest.
+    Ok(unsafe { &mut *pointer })
+}
+
+/// A place for a pointer.
+///
+/// # Safety
+///
+/// What the caller vouches for, see the top of this file.
+pub(crate) unsafe fn place<'a, T>(
+    argument: &'static str,
+    pointer: *mut *mut T,
+) -> Result<&'a mut *mut T, Failure> {
+    check(argument, pointer)?;
+    // SAFETY: not null and aligned, and every bit pattern is a pointer. The caller vouches for the rest.
+    Ok(unsafe { &mut *pointer })
+}
+
+/// `count` rows of three numbers.
+///
+/// # Safety
+///
+/// What the caller vouches for, see the top of this file; and `T` is `f32` or `u32`.
+pub(crate) unsafe fn rows<'a, T>(
+    argument: &'static str,
+    pointer: *const T,
+    count: u32,
+) -> Result<&'a [[T; 3]], Failure> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    check(argument, pointer)?;
+    check_count::<[T; 3]>(argument, count)?;
+    // SAFETY: not null, aligned, and short enough for a slice; every bit pattern is a `T`. The caller vouches for the
+    // rest.
+    Ok(unsafe { core::slice::from_raw_parts(pointer.cast(), count as usize) })
+}
+
+/// `count` rows of three numbers to be written.
+///
+/// # Safety
+///
+/// What the caller vouches for, see the top of this file; that they are kept apart from what the call reads; and `T`
+/// is `f32` or `u32`.
+pub(crate) unsafe fn rows_mut<'a, T>(
+    argument: &'static str,
+    pointer: *mut T,
+    count: u32,
+) -> Result<&'a mut [[T; 3]], Failure> {
+    check(argument, pointer)?;
+    check_count::<[T; 3]>(argument, count)?;
+    // SAFETY: as in `rows`, and no one else has them. The caller vouches for the rest.
+    Ok(unsafe { core::slice::from_raw_parts_mut(pointer.cast(), count as usize) })
+}
+
+/// Whether so many `T` can be in memory at all.
+fn check_count<T>(field: &'static str, count: u32) -> Result<(), Failure> {
+    let most = isize::MAX as usize / size_of::<T>();
+    if count as usize <= most { Ok(()) } else { Err(Failure::Count { field, count: count as usize, most }) }
+}
+
+/// Memory for models and work.
+///
+/// # Safety
+///
+/// What the caller vouches for, see the top of this file; and that it is kept apart from what the call reads.
+pub(crate) unsafe fn memory<'a>(pointer: *mut u8, size: usize) -> Result<&'a mut [u8], Failure> {
+    let most = isize::MAX as usize;
+    if size == 0 {
+        return Ok(&mut []);
+    }
+    check("memory", pointer)?;
+    if size > most || pointer.addr().checked_add(size).is_none() {
+        return Err(Failure::Count { field: "memory_size", count: size, most });
+    }
+    // SAFETY: not null and short enough for a slice, and no one else has it. C may not have written there yet, but
+    // nothing reads a byte before it was written: the core's arena zeroes what it hands out, and the models and poses
+    // that this crate puts there are written whole.
+    Ok(unsafe { core::slice::from_raw_parts_mut(pointer, size) })
+}
+
+/// Something that a call reads or writes, for as far as its extent is known.
+#[derive(Clone, Copy)]
+pub(crate) struct Region {
+    name: &'static str,
+    start: usize,
+    bytes: usize,
+    is_written: bool,
+}
+
+impl Region {
+    pub(crate) fn read<T>(name: &'static str, pointer: *const T, count: usize) -> Self {
+        let bytes = if pointer.is_null() { 0 } else { count.saturating_mul(size_of::<T>()) };
+        Self { name, start: pointer.addr(), bytes, is_written: false }
+    }
+
+    pub(crate) fn written<T>(name: &'static str, pointer: *const T, count: usize) -> Self {
+        Self { is_written: true, ..Self::read(name, pointer, count) }
+    }
+
+    fn overlaps(&self, other: &Self) -> bool {
+        let end = |region: &Self| region.start.saturating_add(region.bytes);
+        self.bytes > 0 && other.bytes > 0 && self.start < end(other) && other.start < end(self)
+    }
+}
+
+/// What the header calls a pointer to a detail.
+pub(crate) const DETAIL: &str = "detail";
+
+/// Says where what is written overlaps anything else. The detail comes first, so that it is known whether it may be
+/// written.
+pub(crate) fn keep_apart(regions: &[Region]) -> Result<(), Failure> {
+    debug_assert!(regions[1..].iter().all(|region| region.name != DETAIL));
+    for (index, one) in regions.iter().enumerate() {
+        for other in &regions[index + 1..] {
+            if one.overlaps(other) && (one.is_written || other.is_written) {
+                let (written, other) = if one.is_written { (one, other) } else { (other, one) };
+                return Err(Failure::Overlap { written: written.name, other: other.name });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Makes a call, and says in `detail`, unless it is null, what became of it.
+///
+/// # Safety
+///
+/// What the caller vouches for, see the top of this file.
+pub(crate) unsafe fn report(
+    detail: *mut hangpose_detail,
+    call: impl FnOnce() -> Result<hangpose_status, Failure>,
+) -> hangpose_status {
+    if !detail.is_null()
+        && let Err(failure) = check_public(detail.cast_const())
+    {
+        return failure.status();
+    }
+    let result = call();
+    let is_apart = !matches!(result, Err(Failure::Overlap { written: DETAIL, .. }));
+    // SAFETY: checked above. Where it lies in something else, it is not written.
+    if is_apart && let Some(detail) = unsafe { detail.as_mut() } {
+        match &result {
+            Ok(status) => detail.answer(*status),
+            Err(failure) => detail.failure(failure),
+        }
+    }
+    result.unwrap_or_else(|failure| failure.status())
+}
+
+// SAFETY: `repr(C)` over numbers, `struct_size` first.
+unsafe impl Public for hangpose_detail {
+    const NAME: &'static str = DETAIL;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_written_must_be_apart() {
+        let bytes = [0_u8; 30];
+        let (a, b) = (Region::read("a", &bytes[0], 10), Region::read("b", &bytes[5], 10));
+        assert_eq!(keep_apart(&[a, b]), Ok(()));
+        let c = Region::written("c", &bytes[15], 10);
+        assert_eq!(keep_apart(&[a, b, c]), Ok(()));
+        let d = Region::written("d", &bytes[14], 1);
+        assert_eq!(keep_apart(&[a, b, c, d]), Err(Failure::Overlap { written: "d", other: "b" }));
+        assert_eq!(keep_apart(&[d, c, b]), Err(Failure::Overlap { written: "d", other: "b" }));
+        let everything = Region::written("everything", &bytes[29], usize::MAX);
+        assert_eq!(keep_apart(&[a, b, c, everything]), Ok(()));
+        assert_eq!(keep_apart(&[a, Region::written("none", core::ptr::null::<u8>(), 40)]), Ok(()));
+    }
+}

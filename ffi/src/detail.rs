@@ -1,0 +1,129 @@
+use crate::failure::{Failure, Place};
+use crate::status::{hangpose_status, status_text};
+use core::ffi::c_char;
+use core::fmt::Write;
+
+/// Where there is no index.
+pub const HANGPOSE_NO_INDEX: u32 = 0xFFFF_FFFF;
+/// Room for the longest field, with its NUL.
+pub const HANGPOSE_FIELD_CHARS: usize = 64;
+/// Room for the longest message, with its NUL.
+pub const HANGPOSE_MESSAGE_CHARS: usize = 256;
+
+/// What a call has to say beside its status: which argument or field is wrong, and what it may be. Every call takes one,
+/// or null; it is written also where all is well. A detail belongs to one call at a time.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hangpose_detail {
+    /// sizeof(hangpose_detail), set by the caller.
+    pub struct_size: u32,
+    /// What the call returned.
+    pub status: hangpose_status,
+    /// The vertex, triangle or point that is wrong, or HANGPOSE_NO_INDEX.
+    pub index: u32,
+    /// The value that is wrong; NaN where no number is.
+    pub value: f64,
+    /// The least that it may be; NaN where there is no range.
+    pub minimum: f64,
+    /// The most that it may be; NaN where there is no range.
+    pub maximum: f64,
+    /// The argument or field that is wrong, such as "params.radius_ratio" or "memory", or "".
+    pub field: [c_char; HANGPOSE_FIELD_CHARS],
+    /// A sentence for people: what is wrong and how to mend it.
+    pub message: [c_char; HANGPOSE_MESSAGE_CHARS],
+}
+
+impl hangpose_detail {
+    /// What goes with a call that went well.
+    pub(crate) fn answer(&mut self, status: hangpose_status) {
+        self.set(status, Place::default(), &status_text(status).to_str().unwrap_or_default());
+    }
+
+    /// What goes with a call that did nothing.
+    pub(crate) fn failure(&mut self, failure: &Failure) {
+        self.set(failure.status(), failure.place(), failure);
+    }
+
+    fn set(&mut self, status: hangpose_status, place: Place, message: &dyn core::fmt::Display) {
+        self.status = status;
+        self.index = place.index.map_or(HANGPOSE_NO_INDEX, |index| index as u32);
+        self.value = place.value.unwrap_or(f64::NAN);
+        [self.minimum, self.maximum] = place.range.unwrap_or([f64::NAN; 2]);
+        print(&mut self.field, format_args!("{}{}", place.prefix, place.field));
+        print(&mut self.message, format_args!("{message}"));
+    }
+}
+
+/// Writes text and a NUL, and what is not ASCII in UTF-8.
+fn print(to: &mut [c_char], text: core::fmt::Arguments) {
+    let mut writer = Writer { to, used: 0 };
+    // Only fails where the text does not fit, and there it is cut; the tests hold the room against the longest.
+    let _ = writer.write_fmt(text);
+    let Writer { to, used } = writer;
+    to[used] = 0;
+}
+
+struct Writer<'a> {
+    to: &'a mut [c_char],
+    used: usize,
+}
+
+impl Write for Writer<'_> {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        let room = self.to.len() - 1 - self.used;
+        let fits = (0..=room.min(text.len())).rev().find(|&end| text.is_char_boundary(end)).unwrap_or(0);
+        for (slot, byte) in self.to[self.used..].iter_mut().zip(text[..fits].bytes()) {
+            *slot = byte as c_char;
+        }
+        self.used += fits;
+        if fits == text.len() { Ok(()) } else { Err(core::fmt::Error) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use hangpose_core::ParamsError;
+    use hangpose_core::geometry::{CloudError, MeshError};
+    use std::string::ToString;
+
+    #[test]
+    fn the_longest_messages_fit() {
+        let (most, worst) = (usize::MAX, [-1.175_494_4e-38_f32; 3]);
+        for failure in [
+            Failure::StructSize { argument: "supporter memory", given: most, expected: most },
+            Failure::Version { given: u32::MAX },
+            Failure::Memory { argument: "prediction memory", needed: most, given: most },
+            Failure::Overlap { written: "prediction", other: "the object's memory" },
+            Failure::Handle { argument: "supporter", maker: "hangpose_supporter_create" },
+            Failure::Choice { field: "params.centre_of_mass", value: u32::MAX, most: u32::MAX },
+            Failure::Count { field: "mesh.triangle_count", count: most, most },
+            Failure::Index { argument: "index", index: u32::MAX, count: most },
+            MeshError::TooLarge { count: most, limit: most }.into(),
+            MeshError::Coordinate { vertex: most, position: worst }.into(),
+            MeshError::Index { triangle: most, vertex: u32::MAX, vertices: most }.into(),
+            MeshError::AllDegenerate { triangles: most }.into(),
+            CloudError::TooLarge { count: most, limit: most }.into(),
+            CloudError::Normal { point: most, normal: worst }.into(),
+            CloudError::Viewpoint { position: worst }.into(),
+            ParamsError::Gravity { gravity: worst }.into(),
+            ParamsError::CentreOfMass { point: worst }.into(),
+            Failure::NoDistanceField,
+        ] {
+            let text = failure.to_string();
+            assert!(text.len() < HANGPOSE_MESSAGE_CHARS, "{} bytes: {text}", text.len());
+            let Place { prefix, field, .. } = failure.place();
+            assert!(prefix.len() + field.len() < HANGPOSE_FIELD_CHARS, "{prefix}{field}");
+        }
+    }
+
+    #[test]
+    fn text_is_cut_between_characters() {
+        let mut room = [1; 4];
+        print(&mut room, format_args!("a{}é", "b"));
+        assert_eq!(room.map(|c| c as u8), *b"ab\0\x01");
+        print(&mut room, format_args!("aé"));
+        assert_eq!(room.map(|c| c as u8), *b"a\xc3\xa9\0");
+    }
+}

@@ -1,0 +1,287 @@
+//! Every way in which a call can be the caller's mistake, and what of it goes into a [`hangpose_detail`].
+//!
+//! [`hangpose_detail`]: crate::hangpose_detail
+
+use crate::status::*;
+use core::fmt::{Display, Formatter};
+use hangpose_core::ParamsError;
+use hangpose_core::geometry::{CloudError, MAX_COORDINATE, MAX_COUNT, MeshError};
+use hangpose_core::hanging::{AnalysisError, PredictError};
+use hangpose_core::memory::OutOfMemory;
+use hangpose_core::perception::sampling::SamplingError;
+
+/// Why a call did nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Failure {
+    Null { argument: &'static str },
+    Misaligned { argument: &'static str, alignment: usize },
+    StructSize { argument: &'static str, given: usize, expected: usize },
+    Version { given: u32 },
+    Memory { argument: &'static str, needed: usize, given: usize },
+    Overlap { written: &'static str, other: &'static str },
+    Handle { argument: &'static str, maker: &'static str },
+    Busy { argument: &'static str },
+    Empty { argument: &'static str },
+    Choice { field: &'static str, value: u32, most: u32 },
+    Count { field: &'static str, count: usize, most: usize },
+    Index { argument: &'static str, index: u32, count: usize },
+    Mesh(MeshError),
+    Cloud(CloudError),
+    Params(ParamsError),
+    NoDistanceField,
+    Cancelled,
+}
+
+/// Where a failure is: the field with its prefix, the index of the element, the value and its range.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Place {
+    pub(crate) prefix: &'static str,
+    pub(crate) field: &'static str,
+    pub(crate) index: Option<usize>,
+    pub(crate) value: Option<f64>,
+    pub(crate) range: Option<[f64; 2]>,
+}
+
+impl Failure {
+    pub(crate) fn status(&self) -> hangpose_status {
+        match self {
+            Self::Null { .. } => HANGPOSE_ERROR_NULL,
+            Self::Misaligned { .. } => HANGPOSE_ERROR_MISALIGNED,
+            Self::StructSize { .. } => HANGPOSE_ERROR_STRUCT_SIZE,
+            Self::Version { .. } => HANGPOSE_ERROR_ABI_VERSION,
+            Self::Memory { .. } => HANGPOSE_ERROR_MEMORY,
+            Self::Overlap { .. } => HANGPOSE_ERROR_OVERLAP,
+            Self::Handle { .. } => HANGPOSE_ERROR_HANDLE,
+            Self::Busy { .. } => HANGPOSE_ERROR_BUSY,
+            Self::Empty { .. } => HANGPOSE_ERROR_EMPTY,
+            Self::Count { .. }
+            | Self::Mesh(MeshError::Empty | MeshError::TooLarge { .. })
+            | Self::Cloud(CloudError::Empty | CloudError::TooLarge { .. } | CloudError::NormalCount { .. }) => {
+                HANGPOSE_ERROR_COUNT
+            }
+            Self::Choice { .. }
+            | Self::Params(_)
+            | Self::Mesh(MeshError::Coordinate { .. })
+            | Self::Cloud(
+                CloudError::Coordinate { .. } | CloudError::Normal { .. } | CloudError::Viewpoint { .. },
+            ) => HANGPOSE_ERROR_VALUE,
+            Self::Index { .. } | Self::Mesh(MeshError::Index { .. }) => HANGPOSE_ERROR_INDEX,
+            Self::Mesh(MeshError::AllDegenerate { .. }) => HANGPOSE_ERROR_DEGENERATE,
+            Self::NoDistanceField => HANGPOSE_ERROR_NO_DISTANCE_FIELD,
+            Self::Cancelled => HANGPOSE_CANCELLED,
+        }
+    }
+
+    pub(crate) fn place(&self) -> Place {
+        match *self {
+            Self::Null { argument }
+            | Self::Misaligned { argument, .. }
+            | Self::Handle { argument, .. }
+            | Self::Busy { argument }
+            | Self::Empty { argument } => Place::of(argument),
+            Self::Overlap { written, .. } => Place::of(written),
+            Self::StructSize { argument, given, expected } => {
+                let range = [expected as f64; 2];
+                Place { prefix: argument, ..Place::of(".struct_size") }.value(given as f64).range(range)
+            }
+            Self::Version { given } => {
+                let range = [f64::from(crate::HANGPOSE_ABI_VERSION); 2];
+                Place::of("abi_version").value(f64::from(given)).range(range)
+            }
+            Self::Memory { argument, needed, given } => {
+                Place::of(argument).value(given as f64).range([needed as f64, f64::INFINITY])
+            }
+            Self::Choice { field, value, most } => {
+                Place::of(field).value(f64::from(value)).range([0.0, f64::from(most)])
+            }
+            Self::Count { field, count, most } => {
+                Place::of(field).value(count as f64).range([1.0, most as f64])
+            }
+            Self::Index { argument, index, count } => {
+                Place::of(argument).value(f64::from(index)).range([0.0, count as f64 - 1.0])
+            }
+            Self::Mesh(error) => mesh_place(error),
+            Self::Cloud(error) => cloud_place(error),
+            Self::Params(error) => params_place(error),
+            Self::NoDistanceField => Place::of("object"),
+            Self::Cancelled => Place::default(),
+        }
+    }
+}
+
+const COORDINATES: [f64; 2] = [-(MAX_COORDINATE as f64), MAX_COORDINATE as f64];
+
+impl Place {
+    fn of(field: &'static str) -> Self {
+        Self { field, ..Self::default() }
+    }
+
+    fn value(self, value: f64) -> Self {
+        Self { value: Some(value), ..self }
+    }
+
+    fn range(self, range: [f64; 2]) -> Self {
+        Self { range: Some(range), ..self }
+    }
+
+    /// The first of three numbers that is no coordinate.
+    fn coordinate(self, index: Option<usize>, position: [f32; 3]) -> Self {
+        let bad = position.into_iter().find(|x| x.is_nan() || x.abs() > MAX_COORDINATE);
+        Self { index, value: bad.map(f64::from), range: Some(COORDINATES), ..self }
+    }
+}
+
+fn mesh_place(error: MeshError) -> Place {
+    match error {
+        MeshError::Empty => Place::of("mesh.triangle_count").value(0.0).range([1.0, MAX_COUNT as f64]),
+        MeshError::TooLarge { count, limit } => {
+            Place::of("mesh").value(count as f64).range([1.0, limit as f64])
+        }
+        MeshError::Coordinate { vertex, position } => {
+            Place::of("mesh.vertices").coordinate(Some(vertex), position)
+        }
+        MeshError::Index { triangle, vertex, vertices } => {
+            let place = Place::of("mesh.triangles").value(f64::from(vertex));
+            Place { index: Some(triangle), ..place.range([0.0, vertices as f64 - 1.0]) }
+        }
+        MeshError::AllDegenerate { .. } => Place::of("mesh.triangles"),
+    }
+}
+
+fn cloud_place(error: CloudError) -> Place {
+    match error {
+        CloudError::Empty => Place::of("cloud.point_count").value(0.0).range([1.0, MAX_COUNT as f64]),
+        CloudError::TooLarge { count, limit } => {
+            Place::of("cloud.point_count").value(count as f64).range([1.0, limit as f64])
+        }
+        CloudError::Coordinate { point, position } => {
+            Place::of("cloud.points").coordinate(Some(point), position)
+        }
+        CloudError::Normal { point, normal } => Place::of("cloud.normals").coordinate(Some(point), normal),
+        CloudError::NormalCount { points, normals } => {
+            Place::of("cloud.normals").value(normals as f64).range([points as f64; 2])
+        }
+        CloudError::Viewpoint { position } => Place::of("cloud.viewpoint").coordinate(None, position),
+    }
+}
+
+fn params_place(error: ParamsError) -> Place {
+    match error {
+        ParamsError::OutOfRange { name, value, min, max } => Place { prefix: "params.", ..Place::of(name) }
+            .value(f64::from(value))
+            .range([f64::from(min), f64::from(max)]),
+        ParamsError::Gravity { .. } => Place::of("params.gravity"),
+        ParamsError::CentreOfMass { point } => {
+            Place::of("params.given_centre_of_mass").coordinate(None, point)
+        }
+    }
+}
+
+impl Display for Failure {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Null { argument } => write!(f, "{argument} is null"),
+            Self::Misaligned { argument, alignment } => {
+                write!(f, "{argument} must begin at a multiple of {alignment} bytes")
+            }
+            Self::StructSize { argument, given, expected } => write!(
+                f,
+                "{argument} has struct_size {given} where {expected} belongs: set it to sizeof the struct, and compile with the library's own header"
+            ),
+            Self::Version { given } => write!(
+                f,
+                "the program was compiled for version {given} of the interface, the library has {}: compile with the library's own header",
+                crate::HANGPOSE_ABI_VERSION
+            ),
+            Self::Memory { argument, needed, given } => write!(
+                f,
+                "{argument} has {given} bytes and {needed} are needed: ask the size query for limits that hold the input"
+            ),
+            Self::Overlap { written, other } => {
+                write!(f, "{written} overlaps {other}: the call would overwrite what it still reads")
+            }
+            Self::Handle { argument, maker } => write!(
+                f,
+                "{argument} is not what {maker} made: it was never made, moved to another address, or overwritten"
+            ),
+            Self::Busy { argument } => {
+                write!(f, "{argument} is in use in another thread: wait for that call to return")
+            }
+            Self::Empty { argument } => {
+                write!(f, "{argument} is empty since its last update was cancelled: update it again")
+            }
+            Self::Choice { field, value, most } => {
+                write!(f, "{field} is {value} and must be one of the header's constants, 0 to {most}")
+            }
+            Self::Count { field, count, most } => write!(f, "{field} is {count} and must be 1 to {most}"),
+            Self::Index { argument, index, count: 0 } => {
+                write!(f, "{argument} is {index}, but there are none")
+            }
+            Self::Index { argument, index, count } => {
+                write!(f, "{argument} is {index} and must be below {count}")
+            }
+            Self::Mesh(error) => error.fmt(f),
+            Self::Cloud(error) => error.fmt(f),
+            Self::Params(error) => error.fmt(f),
+            Self::NoDistanceField => PredictError::NoDistanceField.fmt(f),
+            Self::Cancelled => f.write_str("cancelled"),
+        }
+    }
+}
+
+impl From<MeshError> for Failure {
+    fn from(error: MeshError) -> Self {
+        Self::Mesh(error)
+    }
+}
+
+impl From<CloudError> for Failure {
+    fn from(error: CloudError) -> Self {
+        Self::Cloud(error)
+    }
+}
+
+impl From<ParamsError> for Failure {
+    fn from(error: ParamsError) -> Self {
+        Self::Params(error)
+    }
+}
+
+impl From<OutOfMemory> for Failure {
+    fn from(OutOfMemory { needed, given }: OutOfMemory) -> Self {
+        Self::Memory { argument: "memory", needed, given }
+    }
+}
+
+impl From<AnalysisError> for Failure {
+    fn from(error: AnalysisError) -> Self {
+        match error {
+            AnalysisError::Params(error) => error.into(),
+            AnalysisError::OutOfMemory(error) => error.into(),
+            AnalysisError::Cancelled => Self::Cancelled,
+        }
+    }
+}
+
+impl From<PredictError> for Failure {
+    fn from(error: PredictError) -> Self {
+        match error {
+            PredictError::Params(error) => error.into(),
+            PredictError::OutOfMemory(error) => error.into(),
+            PredictError::NoDistanceField => Self::NoDistanceField,
+        }
+    }
+}
+
+impl From<SamplingError> for Failure {
+    fn from(error: SamplingError) -> Self {
+        match error {
+            SamplingError::TooMany { count, limit } => Self::Count { field: "count", count, most: limit },
+            // Both come with one count from C.
+            SamplingError::Lengths { points, normals } => {
+                Self::Count { field: "count", count: normals, most: points }
+            }
+            SamplingError::OutOfMemory(error) => error.into(),
+        }
+    }
+}

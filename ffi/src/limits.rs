@@ -1,0 +1,122 @@
+use crate::border::{DETAIL, Public, Region, input, keep_apart, optional_input, output, report};
+use crate::cloud::hangpose_cloud;
+use crate::detail::hangpose_detail;
+use crate::mesh::hangpose_mesh;
+use crate::object::ObjectHandle;
+use crate::params::hangpose_params;
+use crate::predict::pose_bytes;
+use crate::status::*;
+use crate::supporter::SupporterHandle;
+use hangpose_core::hanging::{Object, Supporter, predict_bytes};
+use hangpose_core::memory::Limits;
+
+/// How large the inputs may be that memory is set aside for. What stays below needs no more.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hangpose_limits {
+    /// sizeof(hangpose_limits), set by the caller.
+    pub struct_size: u32,
+    /// Vertices of the object's mesh.
+    pub vertices: u32,
+    /// Triangles of the object's mesh.
+    pub triangles: u32,
+    /// hangpose_params.samples.
+    pub samples: u32,
+    /// hangpose_params.voxels.
+    pub voxels: u32,
+    /// Points of the supporter's cloud.
+    pub points: u32,
+    /// Poses asked of hangpose_predict.
+    pub poses: u32,
+}
+
+// SAFETY: `repr(C)` over numbers, `struct_size` first.
+unsafe impl Public for hangpose_limits {
+    const NAME: &'static str = "limits";
+}
+
+impl hangpose_limits {
+    pub(crate) fn to_core(self) -> Limits {
+        Limits {
+            vertices: self.vertices as usize,
+            triangles: self.triangles as usize,
+            samples: self.samples as usize,
+            voxels: self.voxels as usize,
+            points: self.points as usize,
+        }
+    }
+}
+
+/// Sets `limits` to what `params`, `mesh` and `cloud` take, and one pose; a mesh or a cloud may be null, and counts as
+/// none. Only the counts are looked at.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_limits_of(
+    params: *const hangpose_params,
+    mesh: *const hangpose_mesh,
+    cloud: *const hangpose_cloud,
+    limits: *mut hangpose_limits,
+    detail: *mut hangpose_detail,
+) -> hangpose_status {
+    let set = || {
+        keep_apart(&[
+            Region::written(DETAIL, detail, 1),
+            Region::written("limits", limits, 1),
+            Region::read("params", params, 1),
+            Region::read("mesh", mesh, 1),
+            Region::read("cloud", cloud, 1),
+        ])?;
+        // SAFETY: the caller vouches for the pointers; the limits are apart from the rest.
+        let (params, mesh, cloud, limits) =
+            unsafe { (input(params)?, optional_input(mesh)?, optional_input(cloud)?, output(limits)?) };
+        mesh.map_or(Ok(()), hangpose_mesh::check_counts)?;
+        cloud.map_or(Ok(()), hangpose_cloud::check_count)?;
+        *limits = hangpose_limits {
+            struct_size: size_of::<hangpose_limits>() as u32,
+            vertices: mesh.map_or(0, |mesh| mesh.vertex_count),
+            triangles: mesh.map_or(0, |mesh| mesh.triangle_count),
+            samples: params.samples,
+            voxels: params.voxels,
+            points: cloud.map_or(0, |cloud| cloud.point_count),
+            poses: 1,
+        };
+        Ok(HANGPOSE_OK)
+    };
+    // SAFETY: the caller vouches for the detail.
+    unsafe { report(detail, set) }
+}
+
+/// Bytes of memory for any object within `limits`, by vertices, triangles, samples and voxels; 0 if `limits` is null
+/// or its struct_size is wrong. Limits beyond all memory give more than there can be.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_object_bytes(limits: *const hangpose_limits) -> usize {
+    // SAFETY: the caller vouches for the pointer.
+    unsafe { bytes(limits, |limits| ObjectHandle::BYTES.saturating_add(Object::bytes(&limits.to_core()))) }
+}
+
+/// Bytes of memory for any supporter within `limits`, by points; 0 if `limits` is null or its struct_size is wrong.
+/// Limits beyond all memory give more than there can be.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_supporter_bytes(limits: *const hangpose_limits) -> usize {
+    // SAFETY: the caller vouches for the pointer.
+    unsafe {
+        bytes(limits, |limits| SupporterHandle::BYTES.saturating_add(Supporter::bytes(&limits.to_core())))
+    }
+}
+
+/// Bytes of memory for matching any object and supporter within `limits`, by points and poses; 0 if `limits` is
+/// null or its struct_size is wrong. Limits beyond all memory give more than there can be.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_predict_bytes(limits: *const hangpose_limits) -> usize {
+    // SAFETY: the caller vouches for the pointer.
+    unsafe {
+        bytes(limits, |limits| pose_bytes(limits.poses).saturating_add(predict_bytes(&limits.to_core())))
+    }
+}
+
+/// # Safety
+///
+/// What the caller vouches for, see `border`.
+unsafe fn bytes(limits: *const hangpose_limits, of: impl FnOnce(&hangpose_limits) -> usize) -> usize {
+    // SAFETY: as this function's.
+    unsafe { input(limits) }.map_or(0, of)
+}

@@ -1,0 +1,22 @@
+//! The end of a panic, of which there should be none: everything is checked before the core sees it.
+
+/// Stops the program where it is, as a failed check in C would, so that a debugger or a core dump shows the place. A
+/// program without an operating system has no `abort` to call, so this is the processor's own.
+#[panic_handler]
+fn stop(_: &core::panic::PanicInfo) -> ! {
+    // SAFETY: the instructions raise an exception and touch nothing.
+    #[allow(unused_unsafe)]
+    unsafe {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        core::arch::asm!("ud2", options(nomem, nostack));
+        #[cfg(target_arch = "aarch64")]
+        core::arch::asm!("brk #1", options(nomem, nostack));
+        #[cfg(target_arch = "arm")]
+        core::arch::asm!("udf #0", options(nomem, nostack));
+        #[cfg(any(target_arch = "riscv32", target_arch = "riscv64"))]
+        core::arch::asm!("unimp", options(nomem, nostack));
+    }
+    loop {
+        core::hint::spin_loop();
+    }
+}

@@ -1,0 +1,192 @@
+use crate::border::{
+    DETAIL, Public, Region, check, check_size, input, keep_apart, memory as caller_memory, output, report,
+};
+use crate::detail::hangpose_detail;
+use crate::failure::Failure;
+use crate::monitor::{self, hangpose_monitor};
+use crate::object::{ObjectHandle, hangpose_object};
+use crate::params::hangpose_params;
+use crate::pose::hangpose_pose;
+use crate::status::*;
+use crate::supporter::{SupporterHandle, hangpose_supporter};
+use core::ffi::c_void;
+use hangpose_core::Monitor;
+use hangpose_core::hanging::{Counts, HangingPose, Prediction, predict, predict_bytes};
+use hangpose_core::memory::Limits;
+
+/// What hangpose_predict found beside the poses: what was left after each step of the method, and what it took.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hangpose_prediction {
+    /// sizeof(hangpose_prediction), set by the caller.
+    pub struct_size: u32,
+    /// How many poses were written.
+    pub pose_count: u32,
+    /// Why there are none, one of HANGPOSE_STAGE_*; for people: hangpose_stage_string.
+    pub stage: hangpose_stage,
+    /// HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT where this call or the analysis of its models ended early, or
+    /// HANGPOSE_OK.
+    pub stopped: hangpose_status,
+    /// With HANGPOSE_CANDIDATES_SITES, pairs of an object site and a support site.
+    pub matching_pairs: u32,
+    /// Pairs where the support fits into the free space.
+    pub matching_fitting: u32,
+    /// Poses, two a fitting pair, found with no more collisions than allowed; those that others were sure to outrank are
+    /// not counted.
+    pub matching_clear: u32,
+    /// With HANGPOSE_CANDIDATES_CONTACTS, poses that lay a contact of the object on one of the supporter.
+    pub settling_candidates: u32,
+    /// Those that are clear of the supporter.
+    pub settling_clear: u32,
+    /// Poses that were let go.
+    pub settling_released: u32,
+    /// Of these, those that rotated off,
+    pub settling_rotated_off: u32,
+    /// slid off or fell through,
+    pub settling_slid_off: u32,
+    /// or still moved after three seconds.
+    pub settling_moving: u32,
+    /// Those that came to rest.
+    pub settling_at_rest: u32,
+    /// Different rests that are probable enough.
+    pub settling_firm: u32,
+    /// Rays cast.
+    pub rays: u64,
+    /// Distance and inside-outside queries made.
+    pub distance_queries: u64,
+}
+
+// SAFETY: `repr(C)` over numbers, `struct_size` first.
+unsafe impl Public for hangpose_prediction {
+    const NAME: &'static str = "prediction";
+}
+
+// SAFETY: `repr(C)` over numbers, `struct_size` first.
+unsafe impl Public for hangpose_pose {
+    const NAME: &'static str = "poses";
+}
+
+/// Bytes for `count` of the core's poses, wherever the memory begins.
+pub(crate) fn pose_bytes(count: u32) -> usize {
+    size_of::<HangingPose>().saturating_mul(count as usize).saturating_add(align_of::<HangingPose>() - 1)
+}
+
+/// Finds poses in which an object hangs on a supporter and writes the best to `poses`, best first, at most `pose_capacity`,
+/// which is at least 1; more room may take more time. Both must have been analysed with the same `params`. `pose_size`
+/// is sizeof(hangpose_pose). `memory` takes hangpose_predict_bytes and is needed during the call only. `monitor` may be
+/// null.
+///
+/// HANGPOSE_OK with at least one pose; HANGPOSE_REJECTED, and `prediction->stage` says why; HANGPOSE_CANCELLED or
+/// HANGPOSE_WORK_LIMIT with the best poses until then, or none.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_predict(
+    object: *const hangpose_object,
+    supporter: *const hangpose_supporter,
+    params: *const hangpose_params,
+    memory: *mut c_void,
+    memory_size: usize,
+    monitor: *mut hangpose_monitor,
+    poses: *mut hangpose_pose,
+    pose_size: usize,
+    pose_capacity: u32,
+    prediction: *mut hangpose_prediction,
+    detail: *mut hangpose_detail,
+) -> hangpose_status {
+    let call = || {
+        // SAFETY: the caller vouches for the pointers.
+        let (object, supporter) =
+            unsafe { (ObjectHandle::share(object.cast())?, SupporterHandle::share(supporter.cast())?) };
+        check_size::<hangpose_pose>(pose_size)?;
+        let ([object_handle, object_arena], [supporter_handle, supporter_arena]) =
+            (object.regions(), supporter.regions());
+        keep_apart(&[
+            Region::written(DETAIL, detail, 1),
+            Region::written("memory", memory.cast::<u8>(), memory_size),
+            Region::written("poses", poses, pose_capacity as usize),
+            Region::written("prediction", prediction, 1),
+            Region::written("monitor", monitor, 1),
+            Region::read("params", params, 1),
+            object_handle,
+            object_arena,
+            supporter_handle,
+            supporter_arena,
+        ])?;
+        // SAFETY: the caller vouches for the pointers, and what is written is apart from the rest.
+        let (params, monitor, prediction, memory) = unsafe {
+            (
+                input(params)?.to_core()?,
+                monitor::of(monitor)?,
+                output(prediction)?,
+                caller_memory(memory.cast(), memory_size)?,
+            )
+        };
+        check("poses", poses.cast_const())?;
+        let (object, supporter) = (object.model(), supporter.model());
+        let points = supporter.points().points().len();
+        let limits = Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points };
+        let (slots, memory) = pose_slots(memory, pose_capacity, predict_bytes(&limits))?;
+        let none = Monitor::new();
+        let found = predict(object, supporter, &params, slots, memory, monitor.unwrap_or(&none))?;
+        for (index, pose) in found.poses.iter().enumerate() {
+            // SAFETY: aligned, not null, and `index` is below the capacity that the caller vouches for.
+            unsafe { poses.add(index).write(pose.into()) };
+        }
+        *prediction = (&found).into();
+        Ok(match (found.stopped, found.poses) {
+            (Some(stop), _) => stopped(Some(stop)),
+            (None, []) => HANGPOSE_REJECTED,
+            (None, _) => HANGPOSE_OK,
+        })
+    };
+    // SAFETY: the caller vouches for the detail.
+    unsafe { report(detail, call) }
+}
+
+/// Room at the front of `memory` for the core's poses, which are not C's, and the `others` or more bytes behind it.
+fn pose_slots(
+    memory: &mut [u8],
+    count: u32,
+    others: usize,
+) -> Result<(&mut [HangingPose], &mut [u8]), Failure> {
+    if count == 0 {
+        return Err(Failure::Count { field: "pose_capacity", count: 0, most: u32::MAX as usize });
+    }
+    let (needed, given) = (pose_bytes(count).saturating_add(others), memory.len());
+    if given < needed {
+        return Err(Failure::Memory { argument: "memory", needed, given });
+    }
+    let skip = memory.as_ptr().align_offset(align_of::<HangingPose>());
+    let (front, rest) = memory[skip..].split_at_mut(size_of::<HangingPose>() * count as usize);
+    let first = front.as_mut_ptr().cast::<HangingPose>();
+    for index in 0..count as usize {
+        // SAFETY: aligned, and within the bytes that were just counted.
+        unsafe { first.add(index).write(HangingPose::default()) };
+    }
+    // SAFETY: all of them were written just now, and the memory is borrowed for as long as they are.
+    Ok((unsafe { core::slice::from_raw_parts_mut(first, count as usize) }, rest))
+}
+
+impl From<&Prediction<'_>> for hangpose_prediction {
+    fn from(found: &Prediction) -> Self {
+        let Counts { matching, settling, .. } = found.counts;
+        Self {
+            struct_size: size_of::<Self>() as u32,
+            pose_count: found.poses.len() as u32,
+            stage: found.rejection.map_or(HANGPOSE_STAGE_NONE, |rejection| stage(rejection.stage)),
+            stopped: stopped(found.stopped),
+            matching_pairs: matching.pairs as u32,
+            matching_fitting: matching.fitting as u32,
+            matching_clear: matching.clear as u32,
+            settling_candidates: settling.candidates as u32,
+            settling_clear: settling.clear as u32,
+            settling_released: settling.released as u32,
+            settling_rotated_off: settling.rotated_off as u32,
+            settling_slid_off: settling.slid_off as u32,
+            settling_moving: settling.moving as u32,
+            settling_at_rest: settling.at_rest as u32,
+            settling_firm: settling.firm as u32,
+            rays: found.work.rays,
+            distance_queries: found.work.distance_queries,
+        }
+    }
+}

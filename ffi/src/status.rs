@@ -1,0 +1,194 @@
+use core::ffi::{CStr, c_char};
+use hangpose_core::Stop;
+use hangpose_core::hanging::Stage;
+
+/// What became of a call. 0: done. Above 0: a good answer that is not, or not only, poses. Below 0: the caller's
+/// mistake; nothing was done, and hangpose_detail says what to mend.
+pub type hangpose_status = i32;
+
+/// Done.
+pub const HANGPOSE_OK: hangpose_status = 0;
+/// Nothing hangs; hangpose_prediction.stage says which step left nothing.
+pub const HANGPOSE_REJECTED: hangpose_status = 1;
+/// hangpose_monitor_cancel was called. hangpose_predict still gives the best poses until then; an analysis that was
+/// cancelled gives no model.
+pub const HANGPOSE_CANCELLED: hangpose_status = 2;
+/// The monitor's work limit was reached, in this call or when one of its models was made. What was found until then is
+/// there.
+pub const HANGPOSE_WORK_LIMIT: hangpose_status = 3;
+
+/// A pointer that must lead somewhere is null.
+pub const HANGPOSE_ERROR_NULL: hangpose_status = -1;
+/// A pointer is not aligned for what it leads to. Memory for models and work may begin anywhere.
+pub const HANGPOSE_ERROR_MISALIGNED: hangpose_status = -2;
+/// A struct_size is not the size of that struct: it was not set, or the program was compiled with another header.
+pub const HANGPOSE_ERROR_STRUCT_SIZE: hangpose_status = -3;
+/// The program was compiled with the header of another library.
+pub const HANGPOSE_ERROR_ABI_VERSION: hangpose_status = -4;
+/// The memory is smaller than its size query says.
+pub const HANGPOSE_ERROR_MEMORY: hangpose_status = -5;
+/// Memory that the call writes overlaps something else that it was given.
+pub const HANGPOSE_ERROR_OVERLAP: hangpose_status = -6;
+/// A handle or a monitor was never made, was moved, or was overwritten.
+pub const HANGPOSE_ERROR_HANDLE: hangpose_status = -7;
+/// A supporter is in use in another thread and cannot be updated, or is being updated and cannot be used.
+pub const HANGPOSE_ERROR_BUSY: hangpose_status = -8;
+/// A supporter is empty, because its last update was cancelled.
+pub const HANGPOSE_ERROR_EMPTY: hangpose_status = -9;
+/// There are none, or more than the most that are possible.
+pub const HANGPOSE_ERROR_COUNT: hangpose_status = -10;
+/// A number is out of its range, infinite or not a number.
+pub const HANGPOSE_ERROR_VALUE: hangpose_status = -11;
+/// An index names something that does not exist.
+pub const HANGPOSE_ERROR_INDEX: hangpose_status = -12;
+/// No triangle of the mesh has an area.
+pub const HANGPOSE_ERROR_DEGENERATE: hangpose_status = -13;
+/// The params ask to let the object go, but it was analysed without voxels.
+pub const HANGPOSE_ERROR_NO_DISTANCE_FIELD: hangpose_status = -14;
+
+/// The step of the method that left nothing to hang, one of HANGPOSE_STAGE_*.
+pub type hangpose_stage = u32;
+
+/// None: there are poses, or the search was stopped.
+pub const HANGPOSE_STAGE_NONE: hangpose_stage = 0;
+/// Nowhere does the object's surface face its centre of mass, or only in specks.
+pub const HANGPOSE_STAGE_NO_CONTACT_POINTS: hangpose_stage = 1;
+/// There is no room beside the object's contact points for a supporter.
+pub const HANGPOSE_STAGE_NO_FREE_SPACE: hangpose_stage = 2;
+/// The free spaces are open to the side, so that a supporter would slip out.
+pub const HANGPOSE_STAGE_NOT_ENCIRCLED: hangpose_stage = 3;
+/// Nothing on the supporter faces up and holds together.
+pub const HANGPOSE_STAGE_NO_SUPPORT: hangpose_stage = 4;
+/// The supporter is too thick for every free space of the object.
+pub const HANGPOSE_STAGE_TOO_THICK: hangpose_stage = 5;
+/// Every pose runs the supporter through the object.
+pub const HANGPOSE_STAGE_ALL_COLLIDE: hangpose_stage = 6;
+/// Let go, the object turns and falls off, or most often does.
+pub const HANGPOSE_STAGE_ROTATES_OFF: hangpose_stage = 7;
+/// Let go, the object slides off or falls through, or most often does.
+pub const HANGPOSE_STAGE_SLIDES_OFF: hangpose_stage = 8;
+/// Let go, the object does not come to rest.
+pub const HANGPOSE_STAGE_NEVER_RESTS: hangpose_stage = 9;
+/// The object comes to rest, but a nudge would bring it down, or there is no room to put it there.
+pub const HANGPOSE_STAGE_TOO_LOOSE: hangpose_stage = 10;
+
+pub(crate) fn stage(stage: Stage) -> hangpose_stage {
+    match stage {
+        Stage::NoContactPoints => HANGPOSE_STAGE_NO_CONTACT_POINTS,
+        Stage::NoFreeSpace => HANGPOSE_STAGE_NO_FREE_SPACE,
+        Stage::NotEncircled => HANGPOSE_STAGE_NOT_ENCIRCLED,
+        Stage::NoSupport => HANGPOSE_STAGE_NO_SUPPORT,
+        Stage::TooThick => HANGPOSE_STAGE_TOO_THICK,
+        Stage::AllCollide => HANGPOSE_STAGE_ALL_COLLIDE,
+        Stage::RotatesOff => HANGPOSE_STAGE_ROTATES_OFF,
+        Stage::SlidesOff => HANGPOSE_STAGE_SLIDES_OFF,
+        Stage::NeverRests => HANGPOSE_STAGE_NEVER_RESTS,
+        Stage::TooLoose => HANGPOSE_STAGE_TOO_LOOSE,
+    }
+}
+
+/// HANGPOSE_OK where nothing stopped the call.
+pub(crate) fn stopped(stop: Option<Stop>) -> hangpose_status {
+    match stop {
+        None => HANGPOSE_OK,
+        Some(Stop::Cancelled) => HANGPOSE_CANCELLED,
+        Some(Stop::WorkLimit) => HANGPOSE_WORK_LIMIT,
+    }
+}
+
+/// What a status means, in English; never null, lives for ever.
+#[unsafe(no_mangle)]
+pub extern "C" fn hangpose_status_string(status: hangpose_status) -> *const c_char {
+    status_text(status).as_ptr()
+}
+
+/// What a stage means, in English; never null, lives for ever.
+#[unsafe(no_mangle)]
+pub extern "C" fn hangpose_stage_string(stage: hangpose_stage) -> *const c_char {
+    stage_text(stage).as_ptr()
+}
+
+pub(crate) fn status_text(status: hangpose_status) -> &'static CStr {
+    match status {
+        HANGPOSE_OK => c"done",
+        HANGPOSE_REJECTED => c"nothing hangs",
+        HANGPOSE_CANCELLED => c"cancelled",
+        HANGPOSE_WORK_LIMIT => c"the work limit was reached",
+        HANGPOSE_ERROR_NULL => c"a pointer is null",
+        HANGPOSE_ERROR_MISALIGNED => c"a pointer is misaligned",
+        HANGPOSE_ERROR_STRUCT_SIZE => c"a struct_size is wrong",
+        HANGPOSE_ERROR_ABI_VERSION => c"the header is of another version than the library",
+        HANGPOSE_ERROR_MEMORY => c"the memory is too small",
+        HANGPOSE_ERROR_OVERLAP => c"memory overlaps",
+        HANGPOSE_ERROR_HANDLE => c"a handle is not valid",
+        HANGPOSE_ERROR_BUSY => c"in use in another thread",
+        HANGPOSE_ERROR_EMPTY => c"the supporter is empty",
+        HANGPOSE_ERROR_COUNT => c"a count is out of range",
+        HANGPOSE_ERROR_VALUE => c"a value is out of range",
+        HANGPOSE_ERROR_INDEX => c"an index is out of range",
+        HANGPOSE_ERROR_DEGENERATE => c"no triangle has an area",
+        HANGPOSE_ERROR_NO_DISTANCE_FIELD => c"the object was analysed without voxels",
+        _ => c"unknown status",
+    }
+}
+
+/// The core's own words, with the NUL that C needs.
+pub(crate) fn stage_text(stage: hangpose_stage) -> &'static CStr {
+    match stage {
+        HANGPOSE_STAGE_NONE => c"nothing was rejected",
+        HANGPOSE_STAGE_NO_CONTACT_POINTS => {
+            c"the object has no surface that faces its centre of mass and could rest on a support"
+        }
+        HANGPOSE_STAGE_NO_FREE_SPACE => {
+            c"the object has no free space for a supporter beside its contact points"
+        }
+        HANGPOSE_STAGE_NOT_ENCIRCLED => {
+            c"the object does not enclose any of its free spaces, a supporter would slip out"
+        }
+        HANGPOSE_STAGE_NO_SUPPORT => c"the supporter has no part that faces up",
+        HANGPOSE_STAGE_TOO_THICK => {
+            c"every part of the supporter that faces up is too thick for the object's free spaces"
+        }
+        HANGPOSE_STAGE_ALL_COLLIDE => c"in every pose the supporter runs through the object",
+        HANGPOSE_STAGE_ROTATES_OFF => c"wherever it is let go, the object rotates off",
+        HANGPOSE_STAGE_SLIDES_OFF => c"wherever it is let go, the object slides off",
+        HANGPOSE_STAGE_NEVER_RESTS => c"wherever it is let go, the object does not come to rest",
+        HANGPOSE_STAGE_TOO_LOOSE => c"where the object comes to rest, a nudge would bring it down",
+        _ => c"unknown stage",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use std::string::ToString;
+
+    #[test]
+    fn stages_say_what_the_core_says() {
+        for core in [
+            Stage::NoContactPoints,
+            Stage::NoFreeSpace,
+            Stage::NotEncircled,
+            Stage::NoSupport,
+            Stage::TooThick,
+            Stage::AllCollide,
+            Stage::RotatesOff,
+            Stage::SlidesOff,
+            Stage::NeverRests,
+            Stage::TooLoose,
+        ] {
+            assert_eq!(stage_text(stage(core)).to_str().unwrap(), core.to_string());
+        }
+    }
+
+    #[test]
+    fn every_status_has_words() {
+        for status in -14..=3 {
+            assert_ne!(status_text(status), c"unknown status", "{status}");
+        }
+        for status in [i32::MIN, -15, 4, i32::MAX] {
+            assert_eq!(status_text(status), c"unknown status");
+        }
+    }
+}

@@ -1,0 +1,326 @@
+use crate::border::{DETAIL, Public, Region, input, keep_apart, output, place, report};
+use crate::cloud::hangpose_cloud;
+use crate::detail::hangpose_detail;
+use crate::failure::Failure;
+use crate::handle::{Handle, Model};
+use crate::monitor::{self, hangpose_monitor};
+use crate::params::hangpose_params;
+use crate::status::*;
+use core::ffi::c_void;
+use hangpose_core::Monitor;
+use hangpose_core::hanging::Supporter;
+use hangpose_core::memory::Limits;
+
+/// A supporter, analysed, at the front of the memory that it was made in. There is nothing to free; the memory must stay
+/// where it is, and no one else may write to it, for as long as the supporter is used. Any number of threads may use it
+/// at once.
+pub struct hangpose_supporter(#[allow(dead_code)] SupporterHandle);
+
+pub(crate) type SupporterHandle = Handle<Supporter<'static>>;
+
+impl Model for Supporter<'static> {
+    const MAGIC: u32 = 0x5375_7031;
+    const ARGUMENT: &'static str = "supporter";
+    const MAKER: &'static str = "hangpose_supporter_create";
+}
+
+/// Bytes behind the handle for a cloud.
+fn model_bytes(cloud: &hangpose_cloud) -> usize {
+    let points = cloud.point_count as usize;
+    Supporter::bytes(&Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points })
+}
+
+/// Analyses `cloud` in `memory`, which takes hangpose_supporter_bytes for its size, and sets `supporter` to what it made
+/// there, or to null. Memory for more points makes room for later updates. `monitor` may be null.
+///
+/// HANGPOSE_OK, or HANGPOSE_WORK_LIMIT with a supporter that may have more sites or contacts than were found;
+/// HANGPOSE_CANCELLED without one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_supporter_create(
+    memory: *mut c_void,
+    memory_size: usize,
+    cloud: *const hangpose_cloud,
+    params: *const hangpose_params,
+    monitor: *mut hangpose_monitor,
+    supporter: *mut *mut hangpose_supporter,
+    detail: *mut hangpose_detail,
+) -> hangpose_status {
+    let create = || {
+        let memory = memory.cast::<u8>();
+        // SAFETY: the caller vouches for the pointer.
+        let cloud = unsafe { input(cloud) }?;
+        let [cloud_region, points, normals, viewpoint] = cloud.regions();
+        keep_apart(&[
+            Region::written(DETAIL, detail, 1),
+            Region::written("memory", memory, memory_size),
+            Region::written("supporter", supporter, 1),
+            Region::written("monitor", monitor, 1),
+            Region::read("params", params, 1),
+            cloud_region,
+            points,
+            normals,
+            viewpoint,
+        ])?;
+        // SAFETY: the caller vouches for the pointers, and what is written is apart from the rest.
+        let (supporter, params, monitor) =
+            unsafe { (place("supporter", supporter)?, input(params)?, monitor::of(monitor)?) };
+        *supporter = core::ptr::null_mut();
+        let params = params.to_core()?;
+        cloud.check_count()?;
+        let none = Monitor::new();
+        let analyze = |arena: &'static mut [u8]| -> Result<_, Failure> {
+            // SAFETY: the caller vouches for the arrays.
+            let cloud = unsafe { cloud.check() }?;
+            Ok(Supporter::analyze(&cloud, &params, arena, monitor.unwrap_or(&none))?)
+        };
+        // SAFETY: the caller vouches for the memory, which is apart from the rest.
+        let handle = unsafe { SupporterHandle::create(memory, memory_size, model_bytes(cloud), analyze) }?;
+        *supporter = handle.cast();
+        // SAFETY: it was made just now.
+        Ok(stopped(unsafe { SupporterHandle::share(handle) }?.model().stopped()))
+    };
+    // SAFETY: the caller vouches for the detail.
+    unsafe { report(detail, create) }
+}
+
+/// Analyses a new cloud in place of the supporter's old one. No other thread may use the supporter meanwhile; where one
+/// does, the answer is HANGPOSE_ERROR_BUSY. After an error the supporter is what it was; after HANGPOSE_CANCELLED it is
+/// empty, until an update goes through. `monitor` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_supporter_update(
+    supporter: *mut hangpose_supporter,
+    cloud: *const hangpose_cloud,
+    params: *const hangpose_params,
+    monitor: *mut hangpose_monitor,
+    detail: *mut hangpose_detail,
+) -> hangpose_status {
+    let update = || {
+        // SAFETY: the caller vouches for the pointers.
+        let (cloud, core, watch) =
+            unsafe { (input(cloud)?, input(params)?.to_core()?, monitor::of(monitor)?) };
+        cloud.check_count()?;
+        let check = |room, [handle, arena]: [Region; 2]| {
+            let [cloud_region, points, normals, viewpoint] = cloud.regions();
+            keep_apart(&[
+                Region::written(DETAIL, detail, 1),
+                handle,
+                arena,
+                Region::written("monitor", monitor, 1),
+                Region::read("params", params, 1),
+                cloud_region,
+                points,
+                normals,
+                viewpoint,
+            ])?;
+            let needed = model_bytes(cloud);
+            if needed > room {
+                let more = SupporterHandle::BYTES;
+                let (needed, given) = (needed.saturating_add(more), room.saturating_add(more));
+                return Err(Failure::Memory { argument: "supporter", needed, given });
+            }
+            // SAFETY: the caller vouches for the arrays.
+            unsafe { cloud.check() }.map(drop)
+        };
+        let none = Monitor::new();
+        let mut answer = HANGPOSE_OK;
+        let analyze = |arena: &'static mut [u8]| -> Result<_, Failure> {
+            // SAFETY: the caller vouches for the arrays.
+            let cloud = unsafe { cloud.check() }?;
+            let model = Supporter::analyze(&cloud, &core, arena, watch.unwrap_or(&none))?;
+            answer = stopped(model.stopped());
+            Ok(model)
+        };
+        // SAFETY: the caller vouches for the supporter.
+        unsafe { SupporterHandle::rebuild(supporter.cast(), check, analyze) }?;
+        Ok(answer)
+    };
+    // SAFETY: the caller vouches for the detail.
+    unsafe { report(detail, update) }
+}
+
+/// What the analysis of a supporter found.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hangpose_supporter_info {
+    /// sizeof(hangpose_supporter_info), set by the caller.
+    pub struct_size: u32,
+    /// HANGPOSE_WORK_LIMIT where the search for sites or contacts ended early, HANGPOSE_OK where it did not.
+    pub stopped: hangpose_status,
+    /// Points of the cloud.
+    pub points: u32,
+    /// Normals that were missing or zero, and were estimated from the neighbouring points.
+    pub normals_estimated: u32,
+    /// Normals that were not of unit length, and were scaled to it.
+    pub normals_renormalised: u32,
+    /// Points that face up, eq. (2).
+    pub contact_points: u32,
+    /// Clusters of them.
+    pub clusters: u32,
+    /// Clusters at which a slice through the supporter holds together: the support sites; 0 with
+    /// HANGPOSE_CANDIDATES_CONTACTS.
+    pub sites: u32,
+    /// Places where something can lie on the supporter; 0 with HANGPOSE_CANDIDATES_SITES.
+    pub contacts: u32,
+    /// Rays cast.
+    pub rays: u64,
+    /// Distance and inside-outside queries made.
+    pub distance_queries: u64,
+}
+
+// SAFETY: `repr(C)` over numbers, `struct_size` first.
+unsafe impl Public for hangpose_supporter_info {
+    const NAME: &'static str = "info";
+}
+
+/// Writes what the analysis found to `info`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_supporter_get_info(
+    supporter: *const hangpose_supporter,
+    info: *mut hangpose_supporter_info,
+    detail: *mut hangpose_detail,
+) -> hangpose_status {
+    let get = || {
+        // SAFETY: the caller vouches for the pointer.
+        let supporter = unsafe { SupporterHandle::share(supporter.cast()) }?;
+        let [handle, arena] = supporter.regions();
+        keep_apart(&[Region::written(DETAIL, detail, 1), Region::written("info", info, 1), handle, arena])?;
+        // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
+        let info = unsafe { output(info) }?;
+        let supporter = supporter.model();
+        let (normals, counts, work) = (supporter.normals(), supporter.counts(), supporter.work());
+        *info = hangpose_supporter_info {
+            struct_size: size_of::<hangpose_supporter_info>() as u32,
+            stopped: stopped(supporter.stopped()),
+            points: supporter.points().points().len() as u32,
+            normals_estimated: normals.estimated as u32,
+            normals_renormalised: normals.renormalised as u32,
+            contact_points: counts.contact_points as u32,
+            clusters: counts.clusters as u32,
+            sites: counts.sites as u32,
+            contacts: supporter.contacts().len() as u32,
+            rays: work.rays,
+            distance_queries: work.distance_queries,
+        };
+        Ok(HANGPOSE_OK)
+    };
+    // SAFETY: the caller vouches for the detail.
+    unsafe { report(detail, get) }
+}
+
+/// A place on a supporter that something can hang on.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hangpose_supporter_site {
+    /// sizeof(hangpose_supporter_site), set by the caller.
+    pub struct_size: u32,
+    /// c_s: x, y, z of the centre of the cross-section, metres, in supporter coordinates.
+    pub position: [f32; 3],
+    /// v_s: unit vector along which the cross-section is smallest, horizontal, in supporter coordinates; its sign means
+    /// nothing.
+    pub hanging_direction: [f32; 3],
+    /// p_s: x, y, z of the contact point that the supporter was sliced at, metres, in supporter coordinates.
+    pub contact_point: [f32; 3],
+    /// r_s: radius of the sphere around the cross-section, metres.
+    pub support_radius: f32,
+    /// d_1, d_2: distances from the position to the convex hull of the supporter along the hanging direction and against
+    /// it, metres.
+    pub boundary_distances: [f32; 2],
+}
+
+// SAFETY: `repr(C)` over numbers, `struct_size` first.
+unsafe impl Public for hangpose_supporter_site {
+    const NAME: &'static str = "site";
+}
+
+/// Writes support site `index`, below hangpose_supporter_info.sites, to `site`; the thinnest is 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_supporter_get_site(
+    supporter: *const hangpose_supporter,
+    index: u32,
+    site: *mut hangpose_supporter_site,
+    detail: *mut hangpose_detail,
+) -> hangpose_status {
+    let get = || {
+        // SAFETY: the caller vouches for the pointer.
+        let supporter = unsafe { SupporterHandle::share(supporter.cast()) }?;
+        let [handle, arena] = supporter.regions();
+        keep_apart(&[Region::written(DETAIL, detail, 1), Region::written("site", site, 1), handle, arena])?;
+        // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
+        let site = unsafe { output(site) }?;
+        let sites = supporter.model().sites();
+        let found = sites.get(index as usize).ok_or(Failure::Index {
+            argument: "index",
+            index,
+            count: sites.len(),
+        })?;
+        *site = hangpose_supporter_site {
+            struct_size: size_of::<hangpose_supporter_site>() as u32,
+            position: found.position.into(),
+            hanging_direction: found.hanging_direction.into(),
+            contact_point: found.contact_point.into(),
+            support_radius: found.support_radius,
+            boundary_distances: found.boundary_distances,
+        };
+        Ok(HANGPOSE_OK)
+    };
+    // SAFETY: the caller vouches for the detail.
+    unsafe { report(detail, get) }
+}
+
+/// A place where something can lie on a supporter.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hangpose_supporter_contact {
+    /// sizeof(hangpose_supporter_contact), set by the caller.
+    pub struct_size: u32,
+    /// x, y, z of a point of the supporter, metres, in supporter coordinates.
+    pub position: [f32; 3],
+    /// Unit vector out of the solid, in supporter coordinates.
+    pub normal: [f32; 3],
+    /// Unit vector along which the supporter stretches around the point, in supporter coordinates; its sign means
+    /// nothing.
+    pub bar_direction: [f32; 3],
+}
+
+// SAFETY: `repr(C)` over numbers, `struct_size` first.
+unsafe impl Public for hangpose_supporter_contact {
+    const NAME: &'static str = "contact";
+}
+
+/// Writes contact `index`, below hangpose_supporter_info.contacts, to `contact`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_supporter_get_contact(
+    supporter: *const hangpose_supporter,
+    index: u32,
+    contact: *mut hangpose_supporter_contact,
+    detail: *mut hangpose_detail,
+) -> hangpose_status {
+    let get = || {
+        // SAFETY: the caller vouches for the pointer.
+        let supporter = unsafe { SupporterHandle::share(supporter.cast()) }?;
+        let [handle, arena] = supporter.regions();
+        keep_apart(&[
+            Region::written(DETAIL, detail, 1),
+            Region::written("contact", contact, 1),
+            handle,
+            arena,
+        ])?;
+        // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
+        let contact = unsafe { output(contact) }?;
+        let contacts = supporter.model().contacts();
+        let found = contacts.get(index as usize).ok_or(Failure::Index {
+            argument: "index",
+            index,
+            count: contacts.len(),
+        })?;
+        *contact = hangpose_supporter_contact {
+            struct_size: size_of::<hangpose_supporter_contact>() as u32,
+            position: found.position.into(),
+            normal: found.normal.into(),
+            bar_direction: found.bar_direction.into(),
+        };
+        Ok(HANGPOSE_OK)
+    };
+    // SAFETY: the caller vouches for the detail.
+    unsafe { report(detail, get) }
+}

@@ -1,0 +1,438 @@
+// Every function with every argument wrong in every way that can be met: each is answered with a status,
+// nothing that is not the library's is written to, and the models are afterwards what they were. Run as it
+// is, with the caller under the sanitizers, and under valgrind.
+#include <hangpose.h>
+#include <pthread.h>
+#include <time.h>
+
+#include "fixture.h"
+
+static void sizes_and_alignment(void) {
+  for (size_t offset = 0; offset < 17; ++offset) {
+    unsigned char *memory = guarded(object_size, offset);
+    REFUSED(make_object(memory, object_size - 1, &mesh, &params, NULL));
+    if (offset % 4 == 1) CHECK(make_object(memory, object_size, &mesh, &params, NULL) == HANGPOSE_OK);
+    release(memory, object_size, offset);
+    memory = guarded(supporter_size, offset);
+    REFUSED(make_supporter(memory, supporter_size - 1, &cloud, &params));
+    if (offset % 4 == 1) CHECK(make_supporter(memory, supporter_size, &cloud, &params) == HANGPOSE_OK);
+    release(memory, supporter_size, offset);
+    unsigned char *before = work;
+    work = guarded(predict_size, offset);
+    CHECK(is_unharmed());
+    release(work, predict_size, offset);
+    work = before;
+  }
+  const size_t sizes[] = {0, 1, 40, SIZE_MAX, SIZE_MAX / 2 + 1};
+  for (int i = 0; i < 5; ++i) {
+    hangpose_pose pose;
+    hangpose_prediction found = {.struct_size = sizeof found};
+    unsigned char *memory = guarded(64, 0);
+    REFUSED(make_object(memory, sizes[i], &mesh, &params, NULL));
+    REFUSED(make_supporter(memory, sizes[i], &cloud, &params));
+    REFUSED(hangpose_predict(object, supporter, &params, memory, sizes[i], NULL, &pose, sizeof pose, 1,
+                             &found, &detail));
+    REFUSED(hangpose_mesh_sample(&mesh, 0, memory, sizes[i], *points, *normals, 10, &detail));
+    release(memory, 64, 0);
+  }
+  CHECK(HANGPOSE_OBJECT_BYTES(RING_VERTICES, RING_TRIANGLES, SAMPLES, VOXELS) >= object_size);
+  CHECK(HANGPOSE_SUPPORTER_BYTES(POINTS) >= supporter_size);
+  CHECK(HANGPOSE_PREDICT_BYTES(POINTS, POSES) >= predict_size);
+}
+
+static void null_and_misaligned(void) {
+  union {
+    hangpose_mesh mesh;
+    hangpose_cloud cloud;
+    hangpose_params params;
+    hangpose_limits limits;
+    hangpose_prediction found;
+    hangpose_object_info info;
+    unsigned char bytes[512];
+  } odd = {.bytes = {0}};
+  // At odd addresses, and null.
+  void *const bad[2] = {NULL, odd.bytes + 1};
+  hangpose_pose pose;
+  hangpose_prediction found = {.struct_size = sizeof found};
+  hangpose_object_info object_info = {.struct_size = sizeof object_info};
+  hangpose_supporter_info supporter_info = {.struct_size = sizeof supporter_info};
+  hangpose_object_site object_site = {.struct_size = sizeof object_site};
+  hangpose_supporter_site supporter_site = {.struct_size = sizeof supporter_site};
+  hangpose_object_contact object_contact = {.struct_size = sizeof object_contact};
+  hangpose_supporter_contact supporter_contact = {.struct_size = sizeof supporter_contact};
+  hangpose_object *o;
+  hangpose_supporter *s;
+  hangpose_monitor monitor;
+  for (int i = 0; i < 2; ++i) {
+    REFUSED(
+        hangpose_params_init(bad[i], sizeof params, HANGPOSE_PROFILE_DEFAULT, HANGPOSE_ABI_VERSION, &detail));
+    REFUSED(hangpose_monitor_init(bad[i], sizeof monitor, 0, &detail));
+    REFUSED(hangpose_limits_of(bad[i], &mesh, &cloud, &limits, &detail));
+    REFUSED(hangpose_limits_of(&params, &mesh, &cloud, bad[i], &detail));
+    CHECK(hangpose_object_bytes(bad[i]) == 0 && hangpose_supporter_bytes(bad[i]) == 0);
+    CHECK(hangpose_predict_bytes(bad[i]) == 0);
+    unsigned char *memory = guarded(object_size, 0);
+    REFUSED(make_object(NULL, object_size, &mesh, &params, NULL));
+    REFUSED(make_object(memory, object_size, bad[i], &params, NULL));
+    REFUSED(make_object(memory, object_size, &mesh, bad[i], NULL));
+    REFUSED(hangpose_object_create(memory, object_size, &mesh, &params, NULL, bad[i], &detail));
+    REFUSED(make_supporter(NULL, supporter_size, &cloud, &params));
+    REFUSED(make_supporter(memory, object_size, bad[i], &params));
+    REFUSED(make_supporter(memory, object_size, &cloud, bad[i]));
+    REFUSED(hangpose_supporter_create(memory, object_size, &cloud, &params, NULL, bad[i], &detail));
+    release(memory, object_size, 0);
+    REFUSED(hangpose_supporter_update(bad[i], &cloud, &params, NULL, &detail));
+    REFUSED(hangpose_supporter_update(supporter, bad[i], &params, NULL, &detail));
+    REFUSED(hangpose_supporter_update(supporter, &cloud, bad[i], NULL, &detail));
+    REFUSED(hangpose_object_get_info(bad[i], &object_info, &detail));
+    REFUSED(hangpose_object_get_info(object, bad[i], &detail));
+    REFUSED(hangpose_object_get_site(bad[i], 0, &object_site, &detail));
+    REFUSED(hangpose_object_get_site(object, 0, bad[i], &detail));
+    REFUSED(hangpose_object_get_site(object, UINT32_MAX, &object_site, &detail));
+    REFUSED(hangpose_object_get_contact(bad[i], 0, &object_contact, &detail));
+    REFUSED(hangpose_object_get_contact(object, 0, bad[i], &detail));
+    REFUSED(hangpose_object_get_contact(object, UINT32_MAX, &object_contact, &detail));
+    REFUSED(hangpose_supporter_get_info(bad[i], &supporter_info, &detail));
+    REFUSED(hangpose_supporter_get_info(supporter, bad[i], &detail));
+    REFUSED(hangpose_supporter_get_site(bad[i], 0, &supporter_site, &detail));
+    REFUSED(hangpose_supporter_get_site(supporter, 0, bad[i], &detail));
+    REFUSED(hangpose_supporter_get_site(supporter, UINT32_MAX, &supporter_site, &detail));
+    REFUSED(hangpose_supporter_get_contact(bad[i], 0, &supporter_contact, &detail));
+    REFUSED(hangpose_supporter_get_contact(supporter, 0, bad[i], &detail));
+    REFUSED(hangpose_supporter_get_contact(supporter, UINT32_MAX, &supporter_contact, &detail));
+    REFUSED(predict(bad[i], supporter, &params));
+    REFUSED(predict(object, bad[i], &params));
+    REFUSED(predict(object, supporter, bad[i]));
+    REFUSED(hangpose_predict(object, supporter, &params, NULL, predict_size, NULL, &pose, sizeof pose, 1,
+                             &found, &detail));
+    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, bad[i], sizeof pose, 1,
+                             &found, &detail));
+    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose, 1,
+                             bad[i], &detail));
+    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose, 0,
+                             &found, &detail));
+    REFUSED(
+        hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, 1, 1, &found, &detail));
+    // What is wrong without a detail is wrong all the same; a detail that is wrong is itself refused.
+    REFUSED(hangpose_object_create(work, 0, bad[i], bad[i], NULL, bad[i], NULL));
+    hangpose_detail small = {.struct_size = 4};
+    REFUSED(hangpose_object_get_info(object, &object_info, &small));
+    memory = guarded(hangpose_sample_bytes(10), 0);
+    REFUSED(
+        hangpose_mesh_sample(bad[i], 0, memory, hangpose_sample_bytes(10), *points, *normals, 10, &detail));
+    REFUSED(hangpose_mesh_sample(&mesh, 0, memory, hangpose_sample_bytes(10), bad[i], *normals, 10, &detail));
+    REFUSED(hangpose_mesh_sample(&mesh, 0, memory, hangpose_sample_bytes(10), *points, bad[i], 10, &detail));
+    release(memory, hangpose_sample_bytes(10), 0);
+  }
+  // At an odd address nothing is a monitor or a detail; null means none.
+  hangpose_monitor *odd_monitor = bad[1];
+  hangpose_detail *odd_detail = bad[1];
+  REFUSED(hangpose_object_create(object_memory, 0, &mesh, &params, odd_monitor, &o, &detail));
+  REFUSED(hangpose_supporter_create(supporter_memory, 0, &cloud, &params, odd_monitor, &s, &detail));
+  REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, odd_monitor, &pose, sizeof pose, 1,
+                           &found, &detail));
+  REFUSED(hangpose_object_get_info(object, &object_info, odd_detail));
+  CHECK(hangpose_object_get_info(object, &object_info, NULL) == HANGPOSE_OK);
+  hangpose_monitor_cancel(NULL);
+  hangpose_monitor_cancel(odd_monitor);
+  CHECK(hangpose_monitor_progress(NULL) == 0.0f && hangpose_monitor_is_cancelled(odd_monitor) == 0);
+  CHECK(is_unharmed());
+}
+
+static void struct_sizes(void) {
+  const uint32_t sizes[] = {0, 1, 4, 1000, UINT32_MAX};
+  for (int i = 0; i < 5; ++i) {
+    hangpose_mesh m = mesh;
+    hangpose_cloud c = cloud;
+    hangpose_params p = params;
+    hangpose_limits l = limits;
+    hangpose_monitor monitor;
+    hangpose_prediction found = {.struct_size = sizes[i]};
+    hangpose_object_info object_info = {.struct_size = sizes[i]};
+    hangpose_supporter_info supporter_info = {.struct_size = sizes[i]};
+    hangpose_object_site object_site = {.struct_size = sizes[i]};
+    hangpose_supporter_site supporter_site = {.struct_size = sizes[i]};
+    hangpose_object_contact object_contact = {.struct_size = sizes[i]};
+    hangpose_supporter_contact supporter_contact = {.struct_size = sizes[i]};
+    hangpose_pose pose;
+    m.struct_size = c.struct_size = p.struct_size = l.struct_size = sizes[i];
+    REFUSED(hangpose_params_init(&p, sizes[i], HANGPOSE_PROFILE_DEFAULT, HANGPOSE_ABI_VERSION, &detail));
+    REFUSED(hangpose_monitor_init(&monitor, sizes[i], 0, &detail));
+    REFUSED(make_object(work, 0, &m, &params, NULL));
+    REFUSED(make_object(work, 0, &mesh, &p, NULL));
+    REFUSED(make_supporter(work, 0, &c, &params));
+    REFUSED(hangpose_supporter_update(supporter, &c, &params, NULL, &detail));
+    REFUSED(hangpose_limits_of(&params, &m, NULL, &limits, &detail));
+    REFUSED(hangpose_limits_of(&params, NULL, &c, &limits, &detail));
+    REFUSED(hangpose_limits_of(&params, NULL, NULL, &l, &detail));
+    CHECK(hangpose_object_bytes(&l) == 0);
+    REFUSED(hangpose_object_get_info(object, &object_info, &detail));
+    REFUSED(hangpose_supporter_get_info(supporter, &supporter_info, &detail));
+    REFUSED(hangpose_object_get_site(object, 0, &object_site, &detail));
+    REFUSED(hangpose_supporter_get_site(supporter, 0, &supporter_site, &detail));
+    REFUSED(hangpose_object_get_contact(object, 0, &object_contact, &detail));
+    REFUSED(hangpose_supporter_get_contact(supporter, 0, &supporter_contact, &detail));
+    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose, 1,
+                             &found, &detail));
+    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizes[i], 1, &found,
+                             &detail));
+  }
+  CHECK(is_unharmed());
+}
+
+static void counts_and_numbers(void) {
+  const uint32_t counts[] = {0, UINT32_MAX, UINT32_MAX / 3, 1u << 28, (1u << 28) + 1};
+  for (int i = 0; i < 5; ++i) {
+    hangpose_mesh m = mesh;
+    hangpose_cloud c = cloud;
+    m.vertex_count = counts[i];
+    REFUSED(make_object(object_memory, 1000, &m, &params, NULL));
+    m.vertex_count = RING_VERTICES;
+    m.triangle_count = counts[i];
+    REFUSED(make_object(object_memory, 1000, &m, &params, NULL));
+    c.point_count = counts[i];
+    REFUSED(make_supporter(supporter_memory, 1000, &c, &params));
+    REFUSED(hangpose_supporter_update(supporter, &c, &params, NULL, &detail));
+    REFUSED(hangpose_mesh_sample(&mesh, 0, work, predict_size, *points, *normals, counts[i], &detail));
+    hangpose_pose pose;
+    hangpose_prediction found = {.struct_size = sizeof found};
+    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose,
+                             counts[i], &found, &detail));
+    CHECK(hangpose_sample_bytes(counts[i]) > 0);
+  }
+  const float numbers[] = {NAN, INFINITY, -INFINITY, 1e30f};
+  unsigned char *memory = guarded(object_size, 0), *other = guarded(supporter_size, 0);
+  for (int i = 0; i < 4; ++i) {
+    const float x = vertices[3][1], y = points[5][2], n = normals[7][0];
+    const float viewpoint[3] = {0, 0, numbers[i]};
+    hangpose_cloud seen = cloud;
+    seen.viewpoint = viewpoint;
+    vertices[3][1] = points[5][2] = normals[7][0] = numbers[i];
+    REFUSED(make_object(memory, object_size, &mesh, &params, NULL));
+    CHECK(detail.index == 3 && strcmp(detail.field, "mesh.vertices") == 0);
+    REFUSED(make_supporter(other, supporter_size, &cloud, &params));
+    CHECK(detail.index == 5);
+    points[5][2] = y;
+    REFUSED(hangpose_supporter_update(supporter, &cloud, &params, NULL, &detail));
+    CHECK(detail.index == 7);
+    vertices[3][1] = x;
+    normals[7][0] = n;
+    REFUSED(make_supporter(other, supporter_size, &seen, &params));
+  }
+  triangles[9][2] = UINT32_MAX;
+  REFUSED(make_object(memory, object_size, &mesh, &params, NULL));
+  CHECK(detail.index == 9 && detail.maximum == RING_VERTICES - 1);
+  release(memory, object_size, 0);
+  release(other, supporter_size, 0);
+  make_ring(0.03f, vertices, triangles);
+  // Every word of the params in turn. What stays in its range is taken, the rest is named.
+  const uint32_t words[] = {0xFFFFFFFF, 0x7F800000, 0xFF800000, 0x80000001, 0x4B000000};
+  for (size_t at = 1; at < sizeof params / 4; ++at) {
+    for (int i = 0; i < 5; ++i) {
+      hangpose_params p = params;
+      memcpy((char *)&p + 4 * at, &words[i], 4);
+      const hangpose_status status = predict(object, supporter, &p);
+      CHECK(status >= 0 || (status == HANGPOSE_ERROR_VALUE && strncmp(detail.field, "params.", 7) == 0));
+    }
+  }
+  CHECK(is_unharmed());
+}
+
+static void overlaps(void) {
+  const size_t size = object_size + 4 * sizeof vertices + sizeof triangles;
+  unsigned char *memory = guarded(size, 0), *inside = memory + object_size / 16 * 16;
+  hangpose_object *o;
+  hangpose_supporter *s;
+  hangpose_prediction found = {.struct_size = sizeof found};
+  hangpose_pose pose;
+  hangpose_mesh m = mesh, *m_inside = (void *)inside;
+  hangpose_cloud c = cloud, *c_inside = (void *)inside;
+  hangpose_params *p_inside = (void *)inside;
+  hangpose_detail *d_inside = (void *)inside;
+  hangpose_monitor *w_inside = (void *)inside;
+  m.vertices = memcpy(inside, vertices, sizeof vertices);
+  CHECK(make_object(memory, size, &m, &params, NULL) == HANGPOSE_ERROR_OVERLAP);
+  m.vertices = *vertices;
+  m.triangles = memcpy(inside, triangles, sizeof triangles);
+  CHECK(make_object(memory, size, &m, &params, NULL) == HANGPOSE_ERROR_OVERLAP);
+  c.points = memcpy(inside, points, sizeof points);
+  CHECK(make_supporter(memory, size, &c, &params) == HANGPOSE_ERROR_OVERLAP);
+  c.points = *points;
+  c.normals = (float *)(void *)inside;
+  CHECK(make_supporter(memory, size, &c, &params) == HANGPOSE_ERROR_OVERLAP);
+  c.normals = *normals;
+  c.viewpoint = (float *)(void *)inside;
+  CHECK(make_supporter(memory, size, &c, &params) == HANGPOSE_ERROR_OVERLAP);
+  *m_inside = mesh;
+  CHECK(make_object(memory, size, m_inside, &params, NULL) == HANGPOSE_ERROR_OVERLAP);
+  *c_inside = cloud;
+  CHECK(make_supporter(memory, size, c_inside, &params) == HANGPOSE_ERROR_OVERLAP);
+  *p_inside = params;
+  CHECK(make_object(memory, size, &mesh, p_inside, NULL) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(make_supporter(memory, size, &cloud, p_inside) == HANGPOSE_ERROR_OVERLAP);
+  *d_inside = detail;
+  CHECK(hangpose_object_create(memory, size, &mesh, &params, NULL, &o, d_inside) == HANGPOSE_ERROR_OVERLAP);
+  hangpose_monitor_init(w_inside, sizeof *w_inside, HANGPOSE_NO_WORK_LIMIT, NULL);
+  CHECK(make_object(memory, size, &mesh, &params, w_inside) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(hangpose_object_create(memory, size, &mesh, &params, NULL, (void *)inside, &detail) ==
+        HANGPOSE_ERROR_OVERLAP);
+  CHECK(hangpose_supporter_create(memory, size, &cloud, &params, NULL, (void *)inside, NULL) ==
+        HANGPOSE_ERROR_OVERLAP);
+  (void)s;
+  // Into the models.
+  *d_inside = detail;
+  CHECK(hangpose_predict(object, supporter, &params, object_memory, object_size, NULL, &pose, sizeof pose, 1,
+                         &found, NULL) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(hangpose_predict(object, supporter, &params, work, predict_size, NULL,
+                         (void *)(supporter_memory + 4096), sizeof pose, 1, &found,
+                         NULL) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose,
+                         UINT32_MAX / 2, &found, NULL) < 0);
+  CHECK(hangpose_predict(object, supporter, &params, work, predict_size, NULL, (void *)&found, sizeof pose, 1,
+                         &found, NULL) == HANGPOSE_ERROR_OVERLAP);
+  c = cloud;
+  c.points = (float *)(void *)(supporter_memory + 4096);
+  CHECK(hangpose_supporter_update(supporter, &c, &params, NULL, &detail) == HANGPOSE_ERROR_OVERLAP);
+  REFUSED(hangpose_params_init((void *)&detail, sizeof params, HANGPOSE_PROFILE_DEFAULT, HANGPOSE_ABI_VERSION,
+                               &detail));
+  CHECK(hangpose_mesh_sample(&mesh, 0, memory, size, *vertices, *normals, 10, &detail) ==
+        HANGPOSE_ERROR_OVERLAP);
+  CHECK(hangpose_mesh_sample(&mesh, 0, memory, size, *points, *points, 10, &detail) ==
+        HANGPOSE_ERROR_OVERLAP);
+  release(memory, size, 0);
+  CHECK(is_unharmed());
+}
+
+static void handles(void) {
+  unsigned char *memory = guarded(object_size, 0);
+  hangpose_monitor monitor;
+  memset(&monitor, 0x5A, sizeof monitor);
+  CHECK(predict((void *)memory, supporter, &params) == HANGPOSE_ERROR_HANDLE);
+  memset(memory, 0, object_size);
+  CHECK(predict((void *)memory, supporter, &params) == HANGPOSE_ERROR_HANDLE);
+  CHECK(predict(object, (void *)memory, &params) == HANGPOSE_ERROR_HANDLE);
+  CHECK(predict((void *)supporter, supporter, &params) == HANGPOSE_ERROR_HANDLE);
+  CHECK(predict(object, (void *)object, &params) == HANGPOSE_ERROR_HANDLE);
+  // A copy is not the original.
+  memcpy(memory, object, 256);
+  CHECK(predict((void *)memory, supporter, &params) == HANGPOSE_ERROR_HANDLE);
+  CHECK(hangpose_supporter_update((void *)memory, &cloud, &params, NULL, &detail) == HANGPOSE_ERROR_HANDLE);
+  CHECK(make_object(memory, object_size, &mesh, &params, &monitor) == HANGPOSE_ERROR_HANDLE);
+  CHECK(hangpose_monitor_progress(&monitor) == 0.0f && hangpose_monitor_is_cancelled(&monitor) == 0);
+  // What is overwritten is no more, also by a create that fails half-way.
+  hangpose_object *made;
+  CHECK(hangpose_object_create(memory, object_size, &mesh, &params, NULL, &made, &detail) == HANGPOSE_OK);
+  CHECK(predict(made, supporter, &params) == HANGPOSE_OK);
+  hangpose_object *before = made;
+  hangpose_monitor_init(&monitor, sizeof monitor, HANGPOSE_NO_WORK_LIMIT, NULL);
+  hangpose_monitor_cancel(&monitor);
+  CHECK(make_object(memory, object_size, &mesh, &params, &monitor) == HANGPOSE_CANCELLED);
+  CHECK(predict(before, supporter, &params) == HANGPOSE_ERROR_HANDLE);
+  // A work limit is no mistake.
+  for (uint64_t limit = 0; limit < 100000; limit = 10 * limit + 1) {
+    hangpose_monitor_init(&monitor, sizeof monitor, limit, NULL);
+    CHECK(make_object(memory, object_size, &mesh, &params, &monitor) >= 0);
+  }
+  release(memory, object_size, 0);
+  CHECK(is_unharmed());
+}
+
+// Models that were analysed with other params than the prediction's.
+static void other_params(void) {
+  hangpose_params paper = params;
+  paper.candidates = HANGPOSE_CANDIDATES_SITES;
+  paper.settle = 0;
+  paper.voxels = 0;
+  paper.object_directions = 10;
+  unsigned char *memory = guarded(object_size, 0), *other = guarded(supporter_size, 0);
+  hangpose_object *o;
+  hangpose_supporter *s;
+  CHECK(hangpose_object_create(memory, object_size, &mesh, &paper, NULL, &o, &detail) == HANGPOSE_OK);
+  CHECK(hangpose_supporter_create(other, supporter_size, &cloud, &paper, NULL, &s, &detail) == HANGPOSE_OK);
+  CHECK(predict(o, s, &paper) >= 0);
+  CHECK(predict(o, supporter, &params) == HANGPOSE_ERROR_NO_DISTANCE_FIELD);
+  CHECK(predict(o, supporter, &paper) >= 0);
+  CHECK(predict(object, s, &params) >= 0);
+  CHECK(predict(object, s, &paper) >= 0);
+  paper.settle = 1;
+  paper.voxels = VOXELS;
+  CHECK(predict(object, s, &paper) >= 0);
+  CHECK(predict(o, s, &paper) == HANGPOSE_ERROR_NO_DISTANCE_FIELD);
+  release(memory, object_size, 0);
+  release(other, supporter_size, 0);
+  CHECK(is_unharmed());
+}
+
+static void updates(void) {
+  hangpose_monitor monitor;
+  hangpose_cloud more = cloud;
+  more.point_count = POINTS + 1;
+  CHECK(hangpose_supporter_update(supporter, &more, &params, NULL, &detail) == HANGPOSE_ERROR_MEMORY);
+  CHECK(is_unharmed());
+  hangpose_monitor_init(&monitor, sizeof monitor, HANGPOSE_NO_WORK_LIMIT, NULL);
+  hangpose_monitor_cancel(&monitor);
+  CHECK(hangpose_supporter_update(supporter, &cloud, &params, &monitor, &detail) == HANGPOSE_CANCELLED);
+  CHECK(predict(object, supporter, &params) == HANGPOSE_ERROR_EMPTY);
+  more.point_count = POINTS / 2;
+  CHECK(hangpose_supporter_update(supporter, &more, &params, NULL, &detail) == HANGPOSE_OK);
+  CHECK(predict(object, supporter, &params) >= 0);
+  CHECK(hangpose_supporter_update(supporter, &cloud, &params, NULL, &detail) == HANGPOSE_OK);
+  CHECK(is_unharmed());
+}
+
+// Two threads predict with the same models, a third updates one of them and looks on.
+static hangpose_monitor shared;
+static void *predict_again_and_again(void *tally) {
+  unsigned char *mine = guarded(predict_size, 3);
+  for (int i = 0; i < 20; ++i) {
+    hangpose_pose poses[POSES];
+    hangpose_prediction found = {.struct_size = sizeof found};
+    hangpose_detail said = {.struct_size = sizeof said};
+    const hangpose_status status = hangpose_predict(object, supporter, &params, mine, predict_size, &shared,
+                                                    poses, sizeof *poses, POSES, &found, &said);
+    nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);  // so that an update gets its turn
+    if (status == HANGPOSE_OK) ++((int *)tally)[0];
+    if (status == HANGPOSE_OK && memcmp(poses, right, right_count * sizeof *poses) != 0) ++((int *)tally)[1];
+    if (status != HANGPOSE_OK && status != HANGPOSE_ERROR_BUSY) ++((int *)tally)[1];
+  }
+  free(mine - GUARD - 3);
+  return NULL;
+}
+static void threads(void) {
+  pthread_t both[2];
+  int tallies[2][2] = {{0, 0}, {0, 0}}, updated = 0;
+  hangpose_monitor_init(&shared, sizeof shared, HANGPOSE_NO_WORK_LIMIT, NULL);
+  for (int i = 0; i < 2; ++i) pthread_create(&both[i], NULL, predict_again_and_again, tallies[i]);
+  for (int i = 0; i < 200; ++i) {
+    const float progress = hangpose_monitor_progress(&shared);
+    CHECK(progress >= 0.0f && progress <= 1.0f);
+    const hangpose_status status = hangpose_supporter_update(supporter, &cloud, &params, NULL, &detail);
+    CHECK(status == HANGPOSE_OK || status == HANGPOSE_ERROR_BUSY);
+    updated += status == HANGPOSE_OK;
+    nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+  }
+  for (int i = 0; i < 2; ++i) pthread_join(both[i], NULL);
+  CHECK(tallies[0][1] == 0 && tallies[1][1] == 0);
+  printf("two threads: %d predictions and %d updates went through\n", tallies[0][0] + tallies[1][0], updated);
+  CHECK(is_unharmed());
+}
+
+int main(void) {
+  set_up();
+  sizes_and_alignment();
+  null_and_misaligned();
+  struct_sizes();
+  counts_and_numbers();
+  overlaps();
+  handles();
+  other_params();
+  updates();
+  threads();
+  CHECK(hangpose_status_string(INT32_MIN) != NULL && hangpose_stage_string(UINT32_MAX) != NULL);
+  CHECK(hangpose_check_abi(0) == HANGPOSE_ERROR_ABI_VERSION &&
+        hangpose_check_abi(hangpose_abi_version()) == HANGPOSE_OK);
+
+  tear_down();
+  printf("%d checks, %d failed\n", checks, failures);
+  return failures != 0;
+}

@@ -1,0 +1,106 @@
+//! HANGPOSE_OBJECT_BYTES and its like in the header, held against the queries.
+
+use hangpose_ffi::*;
+
+const NONE: hangpose_limits = hangpose_limits {
+    struct_size: size_of::<hangpose_limits>() as u32,
+    vertices: 0,
+    triangles: 0,
+    samples: 0,
+    voxels: 0,
+    points: 0,
+    poses: 0,
+};
+
+/// A constant of the header.
+fn constant(name: &str) -> usize {
+    let header = include_str!("../../include/hangpose.h");
+    let line =
+        header.lines().find_map(|line| line.strip_prefix("#define ")?.strip_prefix(name)?.strip_prefix(' '));
+    line.unwrap_or_else(|| panic!("no {name} in the header")).parse().unwrap()
+}
+
+#[test]
+fn the_macros_never_give_less_than_the_queries() {
+    let sizes = [0, 1, 2, 3, 100, 1000, 12_345, 100_000, 2_000_000];
+    let [at_least, vertex, triangle, sample, voxel] =
+        ["AT_LEAST", "EACH_VERTEX", "EACH_TRIANGLE", "EACH_SAMPLE", "EACH_VOXEL"]
+            .map(|name| constant(&format!("HANGPOSE_OBJECT_BYTES_{name}")));
+    let given = |limits: &hangpose_limits| {
+        at_least
+            + vertex * limits.vertices as usize
+            + triangle * limits.triangles as usize
+            + sample * limits.samples as usize
+            + voxel * limits.voxels as usize
+    };
+    // SAFETY: the limits are there.
+    let needed = |limits: &hangpose_limits| unsafe { hangpose_object_bytes(limits) };
+    for vertices in sizes {
+        for triangles in sizes {
+            for samples in sizes {
+                for voxels in sizes {
+                    let limits = hangpose_limits { vertices, triangles, samples, voxels, ..NONE };
+                    let (given, needed) = (given(&limits), needed(&limits));
+                    assert!(
+                        given >= needed,
+                        "{vertices} vertices, {triangles} triangles, {samples} samples, {voxels} voxels: {given} < {needed}"
+                    );
+                }
+            }
+        }
+    }
+    // How much more than needed, for a mug and the default params.
+    let params = hangpose::Params::default();
+    let (samples, voxels) = (params.samples as u32, params.voxels as u32);
+    let mug = hangpose_limits { vertices: 3556, triangles: 7040, samples, voxels, ..NONE };
+    assert!(given(&mug) < needed(&mug) + needed(&mug) / 2, "{} bytes for {}", given(&mug), needed(&mug));
+
+    let [at_least, point] =
+        ["AT_LEAST", "EACH_POINT"].map(|name| constant(&format!("HANGPOSE_SUPPORTER_BYTES_{name}")));
+    for points in sizes {
+        let given = at_least + point * points as usize;
+        // SAFETY: the limits are there.
+        let needed = unsafe { hangpose_supporter_bytes(&hangpose_limits { points, ..NONE }) };
+        assert!(
+            (needed..needed + 4096 + needed / 20).contains(&given),
+            "{points} points: {given} for {needed}"
+        );
+    }
+
+    let [at_least, point, pose] = ["AT_LEAST", "EACH_POINT", "EACH_POSE"]
+        .map(|name| constant(&format!("HANGPOSE_PREDICT_BYTES_{name}")));
+    for points in sizes {
+        for poses in sizes {
+            let given = at_least + point * points as usize + pose * poses as usize;
+            // SAFETY: the limits are there.
+            let needed = unsafe { hangpose_predict_bytes(&hangpose_limits { points, poses, ..NONE }) };
+            assert!(
+                (needed..needed + 4096).contains(&given),
+                "{points} points, {poses} poses: {given} for {needed}"
+            );
+        }
+    }
+}
+
+#[test]
+fn limits_beyond_all_memory_do_not_wrap() {
+    let most = u32::MAX;
+    let limits = hangpose_limits {
+        vertices: most,
+        triangles: most,
+        samples: most,
+        voxels: most,
+        points: most,
+        poses: most,
+        ..NONE
+    };
+    // SAFETY: the limits are there.
+    unsafe {
+        assert!(hangpose_object_bytes(&limits) > most as usize);
+        assert!(hangpose_supporter_bytes(&limits) > most as usize);
+        assert!(hangpose_predict_bytes(&limits) > most as usize);
+        let unset = hangpose_limits { struct_size: 0, ..limits };
+        assert_eq!(hangpose_object_bytes(&unset), 0);
+        assert_eq!(hangpose_supporter_bytes(core::ptr::null()), 0);
+    }
+}

@@ -1,0 +1,177 @@
+#!/usr/bin/env bash
+# Builds the C library, installs it, and links it from outside the tree in every way that the README promises: through
+# CMake and pkg-config, static and shared, with gcc and clang, as the Debian package, and taken in as source.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+source "$root/scripts/archive.sh"
+here=$(mktemp -d)
+background=
+trap 'test -z "$background" || kill "$background" 2>/dev/null || true; rm -rf "$here"' EXIT
+cd "$here"
+
+say() { echo "link: $*"; }
+fail() { echo "link: $*" >&2; exit 1; }
+# Runs quietly, and shows what was said only where it fails.
+quiet() { "$@" >quiet.log 2>&1 || { cat quiet.log >&2; fail "failed: $*"; }; }
+
+# ---- build and install, with another prefix than the build's
+cp -r "$root/examples-c" "$root/ffi/tests" "$root/samples" .
+quiet make -C "$root" lib install DESTDIR="$here/root" PREFIX=/opt/hangpose
+prefix=$here/root/opt/hangpose
+archive=$prefix/lib/libhangpose.a
+shared=$prefix/lib/libhangpose.so
+
+# ---- what is in them
+table=$(symbol_table "$archive")
+check_forbidden link "$(cut -d ' ' -f 2 <<<"$table" | sort -u)"
+needed=$(undefined_symbols "$table" | grep -vxE 'mem(cpy|move|set|cmp)|bcmp' || true)
+[ -z "$needed" ] || fail "the archive needs more than memcpy and its like:" $needed
+visible=$(readelf --syms --wide "$archive" | awk '$5 != "LOCAL" && $7 != "UND" && $8 !~ /^hangpose_/ && NF == 8 { print $8 }' |
+    grep -vx Name || true)
+[ -z "$visible" ] || fail "the archive shows more than hangpose_*:" $visible
+# Read-only once the program is loaded: .data.rel.ro. Anything else would be state.
+mutable=$(size -A "$archive" | awk '$1 ~ /^\.(data|bss|tdata|tbss)/ && $1 !~ /^\.data\.rel\.ro/ && $2 > 0 { print $1, $2 }')
+[ -z "$mutable" ] || fail "the archive has mutable state:" $mutable
+readelf -d "$shared" | grep -q "SONAME.*\[libhangpose.so.[0-9]*\]" || fail "libhangpose.so has no SONAME"
+say "libhangpose.a has no allocator, no unwinding and no mutable state, and shows hangpose_* alone"
+
+# ---- the examples, through CMake
+examples=(01_static_memory "02_mesh_file samples/mug.obj samples/hook.obj" 03_two_threads 04_control_loop 05_eigen 06_every_error)
+run_examples() {
+    local example
+    for example in "${examples[@]}"; do quiet "$1"/$example; done
+}
+for compilers in "gcc g++" "clang clang++"; do
+    read -r cc cxx <<<"$compilers"
+    for is_shared in OFF ON; do
+        dir=build-$cc-$is_shared
+        quiet cmake -S examples-c -B "$dir" -DCMAKE_PREFIX_PATH="$prefix" -DBUILD_SHARED_LIBS=$is_shared \
+            -DCMAKE_C_COMPILER=$cc -DCMAKE_CXX_COMPILER=$cxx -DCMAKE_C_FLAGS=-Werror \
+            -DCMAKE_CXX_FLAGS="-Werror -fno-exceptions -fno-rtti" -DCMAKE_C_EXTENSIONS=OFF -DCMAKE_CXX_EXTENSIONS=OFF
+        quiet cmake --build "$dir" --parallel 2
+        run_examples "$dir"
+    done
+    say "every example through CMake with $cc, static and shared"
+done
+readelf -d build-gcc-ON/01_static_memory | grep -q 'libhangpose.so' || fail "BUILD_SHARED_LIBS does not link libhangpose.so"
+
+# ---- every standard, through pkg-config
+export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
+flags=$(pkg-config --cflags hangpose)
+libs=$(pkg-config --libs hangpose)
+static_libs="-Wl,-Bstatic $libs -Wl,-Bdynamic $(pkg-config --static --libs-only-l hangpose | sed 's/-lhangpose//')"
+warnings="-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror"
+echo '#include <hangpose.h>' >header.c
+cp header.c header.cpp
+for cc in gcc clang; do
+    for std in c99 c11 c17; do
+        quiet $cc -std=$std $warnings $flags -c header.c -o header.o
+        quiet $cc -std=$std $warnings $flags examples-c/01_static_memory.c $static_libs -lm -o 01
+        quiet ./01
+    done
+done
+for cxx in g++ clang++; do
+    for std in c++17 c++20; do
+        strict="$warnings -fno-exceptions -fno-rtti"
+        quiet $cxx -std=$std $strict $flags -c header.cpp -o header.o
+        quiet $cxx -std=$std $strict $flags -Iexamples-c tests/c/wrapper.cpp $static_libs -o wrapper
+        quiet ./wrapper
+    done
+done
+quiet gcc $flags examples-c/01_static_memory.c $libs -lm -o 01-shared
+quiet env LD_LIBRARY_PATH="$prefix/lib" ./01-shared
+say "hangpose.h as C99, C11, C17 and C++, hangpose.hpp as C++17 and 20, through pkg-config, static and shared"
+
+# ---- callers that go wrong
+caller="-std=gnu11 -g -O1 $flags -Iexamples-c tests/c/robustness.c $static_libs -lm -pthread"
+quiet gcc $caller -o robustness
+valgrind -q --error-exitcode=9 --fair-sched=yes ./robustness >valgrind.log 2>&1 &
+background=$!
+quiet gcc -fsanitize=address,undefined -fno-sanitize-recover=all $caller -o sanitized
+quiet ./sanitized
+say "robustness under ASan and UBSan: $(tail -1 quiet.log)"
+quiet g++ -std=c++17 -g -fsanitize=address,undefined -fno-sanitize-recover=all $flags -Iexamples-c tests/c/wrapper.cpp \
+    $static_libs -o wrapper
+quiet ./wrapper
+
+# ---- a header of another version: links, and is refused when it runs; and CMake does not even find it
+cp -r "$prefix/include" other-include
+sed -i 's/#define HANGPOSE_ABI_VERSION .*/#define HANGPOSE_ABI_VERSION 999/' other-include/hangpose.h
+quiet gcc -Iother-include examples-c/01_static_memory.c "$archive" -lm -o other-c
+quiet g++ -std=c++17 -Iother-include examples-c/02_mesh_file.cpp "$archive" -o other-cpp
+for program in ./other-c "./other-cpp samples/mug.obj samples/hook.obj"; do
+    if $program >other.log 2>&1; then fail "a header of another version was taken: $program"; fi
+    grep -q "compiled for version 999" other.log || fail "a header of another version was not named: $(cat other.log)"
+done
+sed 's/find_package(hangpose 0.1 REQUIRED)/find_package(hangpose 99 REQUIRED)/' "$root/examples-c/CMakeLists.txt" \
+    >examples-c/CMakeLists.txt
+if cmake -S examples-c -B build-other -DCMAKE_PREFIX_PATH="$prefix" >other.log 2>&1; then
+    fail "CMake takes version 0.1 for 99"
+fi
+cp "$root/examples-c/CMakeLists.txt" examples-c/
+say "a header of another version is refused: $(./other-c 2>&1 || true)"
+
+# ---- the same bits as Rust
+mkdir pairs
+quiet cargo run --manifest-path "$root/Cargo.toml" -p hangpose-ffi --example pairs -- pairs
+quiet gcc -std=c11 -O2 $flags tests/c/pairs.c $static_libs -o compare
+quiet ./compare pairs/*.bin
+say "$(cat quiet.log)"
+
+# ---- beside another archive made by Rust, that has std; with sections that no one needs thrown out
+cat >other.rs <<'RUST'
+#[unsafe(no_mangle)]
+pub extern "C" fn other(count: u32) -> u32 {
+    std::panic::catch_unwind(|| (0..count).map(|i| i.to_string()).collect::<Vec<_>>().concat().len() as u32).unwrap_or(0)
+}
+RUST
+quiet rustc --edition 2024 --crate-type staticlib -O other.rs -o libother.a
+cat >both.c <<'C'
+#include <hangpose.h>
+#include <stdio.h>
+uint32_t other(uint32_t count);
+int main(void) { return printf("%s %u\n", hangpose_version(), (unsigned)other(12)) < 0 || other(12) != 14; }
+C
+whole="-Wl,--whole-archive $archive -Wl,--no-whole-archive"
+for order in "$whole libother.a" "libother.a $whole"; do
+    quiet gcc $flags both.c $order -lpthread -ldl -lm -lgcc_s -o both
+    quiet ./both
+done
+quiet gcc -O2 -ffunction-sections -fdata-sections $flags examples-c/01_static_memory.c "$archive" -lm -Wl,--gc-sections -o small
+quiet ./small
+strip small
+say "links beside an archive of Rust's with std, and with --gc-sections"
+say "a stripped C program that predicts (01, static): $(stat -c %s small) bytes; code and constants of libhangpose.a:" \
+    "$(size "$archive" | awk 'NR == 2 { print $1 + $2 }') bytes"
+
+# ---- the Debian package
+quiet make -C "$root" deb
+package=$(ls -t "$root"/build/libhangpose-dev_*.deb | head -1)
+dpkg-deb -x "$package" debian
+libdir=$(dirname "$(find debian/usr -name libhangpose.a)")
+quiet env PKG_CONFIG_PATH="$here/$libdir/pkgconfig" sh -c \
+    'gcc $(pkg-config --cflags hangpose) examples-c/01_static_memory.c $(pkg-config --libs hangpose) -lm -o 01-debian'
+quiet env LD_LIBRARY_PATH="$here/$libdir" ./01-debian
+quiet cmake -S examples-c -B build-debian -DCMAKE_PREFIX_PATH="$here/debian/usr"
+quiet cmake --build build-debian --target 02_mesh_file
+quiet build-debian/02_mesh_file samples/mug.obj samples/hook.obj
+grep -q '<name>hangpose</name>' debian/usr/share/hangpose/package.xml || fail "there is no package.xml"
+say "$(basename "$package") links, $(dpkg-deb -f "$package" Depends)"
+
+# ---- taken in as source
+cargo_dir=${CARGO_TARGET_DIR:-$root/target}/link
+for how in add_subdirectory FetchContent; do
+    for is_shared in OFF ON; do
+        dir=build-$how-$is_shared
+        quiet cmake -S tests/cmake -B $dir -DHOW=$how -DHANGPOSE_SOURCE="$root" -DHANGPOSE_CARGO_DIR="$cargo_dir" \
+            -DBUILD_SHARED_LIBS=$is_shared
+        quiet cmake --build $dir --parallel 2
+        quiet $dir/in_c
+        quiet $dir/in_cpp samples/mug.obj samples/hook.obj
+    done
+done
+say "as source through add_subdirectory and FetchContent, static and shared"
+
+wait "$background" || { cat valgrind.log >&2; fail "valgrind found something"; }
+background=
+say "robustness under valgrind: $(tail -1 valgrind.log)"
