@@ -136,13 +136,14 @@ impl<'s> Neighbourhood<'s> {
             // The rim of a disc comes closer than its centre, by no more than this.
             let normal = rotation.inverse_transform_vector(&support.normals[index]);
             let slope = gradient - normal * gradient.dot(&normal);
-            let least = gap - support.disc * slope.norm();
+            let disc = support.disc_at(index);
+            let least = gap - disc * slope.norm();
             if least > margin {
                 near.sleeps_until = self.odometer + least - margin;
                 continue;
             }
             queries += 1;
-            let (at, gap, gradient) = nearest_on_disc(body, at, gap, gradient, slope, support.disc);
+            let (at, gap, gradient) = nearest_on_disc(body, at, gap, gradient, slope, disc);
             if gap > margin {
                 near.sleeps_until = self.odometer + gap - margin;
                 continue;
