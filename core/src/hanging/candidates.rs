@@ -33,7 +33,7 @@ impl Candidate {
 
 /// Of an object contact at most so many are kept, on different places of the supporter: what does not stay on these would hardly on
 /// others.
-const PER_CONTACT: usize = 12;
+const PER_CONTACT: usize = 4;
 /// Kept at most.
 pub(super) const MAX_CANDIDATES: usize = object_contact::MAX_CONTACTS * PER_CONTACT;
 /// Support contacts are gone through in such steps, so that the first ones are far apart.
@@ -47,8 +47,9 @@ pub(super) const CLEARANCE: f32 = 0.0005;
 const PROBES: usize = 16;
 /// ... and from how far around, metres.
 const AROUND: f32 = 0.03;
-/// Quarter turns about the vertical: first those that lay the bar along the direction in which the object catches it best.
-const TURNS: [u8; 4] = [0, 2, 1, 3];
+/// Quarter turns about the vertical: first those that lay the bar along the direction in which the object catches it best, and
+/// of these one way or the other in turn.
+const TURNS: [[u8; 4]; 2] = [[0, 2, 1, 3], [2, 0, 3, 1]];
 /// The promise of the first two.
 const ALONG: f32 = 1.0;
 /// What a contact promises that catches this or less, metres.
@@ -78,10 +79,10 @@ pub(super) fn find(
         let most = kept + PER_CONTACT;
         for k in 0..places.len() {
             let j = k * stride % places.len();
-            for turn in TURNS {
-                if kept == most {
-                    break;
-                }
+            if kept == most {
+                break;
+            }
+            for turn in TURNS[(i + k) % 2] {
                 let yaw = core::f32::consts::FRAC_PI_2 * f32::from(turn);
                 let support_frame = frame(rotate_about(up, yaw, places[j].along), -up);
                 let rotation = Rotation3::from_matrix_unchecked(support_frame * object_frame.transpose());
@@ -96,6 +97,7 @@ pub(super) fn find(
                         is_tried: 0,
                     };
                     kept += 1;
+                    break;
                 }
             }
         }

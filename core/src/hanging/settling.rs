@@ -5,7 +5,9 @@ use super::pose::Rest;
 use super::{HangingPose, ObjectContact, SupportContact, probability};
 use crate::best::Best;
 use crate::geometry::Pose;
-use crate::mechanics::{Body, Fate, Near, Settings, Support, comes_free, firmness, is_off_surface, release_pose, settle};
+use crate::mechanics::{
+    Body, Fate, Near, Settings, Support, comes_free, firmness, is_off_surface, release_pose, settle,
+};
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
 

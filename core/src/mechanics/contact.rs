@@ -1,6 +1,7 @@
 //! Where the body and the supporter touch.
 
 use super::body::State;
+use super::odometer::Odometer;
 use super::{Body, Support};
 use crate::geometry::{Point, Vector};
 use crate::monitor::{Meter, Stop};
@@ -34,7 +35,9 @@ pub(crate) type Contacts = Vec<Contact, MOST>;
 #[repr(C)]
 pub(crate) struct Near {
     index: u32,
-    /// The odometer below which it cannot be in contact.
+    /// No part of the body that can come to it within the list's life is farther than this from the pivot, metres.
+    radius: f32,
+    /// The reading of the odometer for that radius up to which it cannot be in contact.
     sleeps_until: f32,
 }
 
@@ -42,32 +45,41 @@ pub(crate) struct Near {
 pub(crate) struct Neighbourhood<'s> {
     near: &'s mut [Near],
     count: usize,
-    /// How far any point of the body can have moved since the start, metres.
-    odometer: f32,
+    /// Since the list was made.
+    odometer: Odometer,
     /// How often the last contacts may still be carried along,
     carries: u8,
-    /// and the odometer up to which they may.
+    /// and the reading for the whole body up to which they may.
     carried_until: f32,
-    /// The odometer up to which no point outside the list can be in contact.
+    /// The reading for the whole body up to which no point outside the list can be in contact.
     valid_until: f32,
 }
 
 /// How far around the body points are gathered, metres.
-const SURROUNDINGS: f32 = 0.02;
+const SURROUNDINGS: f32 = 0.03;
 
 impl<'s> Neighbourhood<'s> {
     pub(crate) fn new(near: &'s mut [Near]) -> Self {
-        Self { near, count: 0, odometer: 0.0, carries: 0, carried_until: -1.0, valid_until: -1.0 }
+        let odometer = Odometer::new(Vector::zeros());
+        Self { near, count: 0, odometer, carries: 0, carried_until: -1.0, valid_until: -1.0 }
     }
 
-    /// Tells that no point of the body moved farther than `distance` since the last call.
-    pub(crate) fn moved(&mut self, distance: f32) {
-        self.odometer += distance;
+    /// Tells by what displacement and rotation vector the body moves on from `state`.
+    pub(crate) fn moves(&mut self, state: &State, shift: &Vector, turn: &Vector) {
+        self.odometer.add(state, shift, turn);
     }
 
     /// Lists the representatives around the body, so that nothing farther off is looked at for a while.
-    fn gather(&mut self, body: &Body, support: &Support, state: &State, reach: f32) -> usize {
+    fn gather(
+        &mut self,
+        contacts: &Contacts,
+        (body, support): (&Body, &Support),
+        state: &State,
+        reach: f32,
+    ) -> usize {
         let surroundings = SURROUNDINGS.max(2.0 * reach);
+        let anchors: Vector = contacts.iter().map(|contact| contact.anchor).sum();
+        self.odometer = Odometer::new(anchors / contacts.len().max(1) as f32);
         let to_object = body.pose(state).inverse();
         let mut queries = 0;
         self.count = 0;
@@ -79,12 +91,13 @@ impl<'s> Neighbourhood<'s> {
                 return false;
             }
             for index in node.items().into_iter().flatten().filter(|&i| support.is_representative[i] > 0) {
-                self.near[self.count] = Near { index: index as u32, sleeps_until: f32::NEG_INFINITY };
+                let radius = self.odometer.radius(state, &support.tree.points()[index]) + surroundings;
+                self.near[self.count] = Near { index: index as u32, radius, sleeps_until: -1.0 };
                 self.count += 1;
             }
             true
         });
-        self.valid_until = self.odometer + surroundings - reach;
+        self.valid_until = surroundings - reach;
         queries
     }
 
@@ -100,7 +113,8 @@ impl<'s> Neighbourhood<'s> {
     ) -> Result<(), Stop> {
         let (body, support) = scene;
         let rotation = state.rotation.to_rotation_matrix();
-        if self.carries > 0 && self.odometer <= self.carried_until {
+        let whole = self.odometer.greatest_radius(body.reach);
+        if self.carries > 0 && self.odometer.reading(whole) <= self.carried_until {
             self.carries -= 1;
             for contact in contacts.iter_mut() {
                 contact.position = state.centre + rotation * contact.anchor;
@@ -109,43 +123,45 @@ impl<'s> Neighbourhood<'s> {
             }
             return Ok(());
         }
-        (self.carries, self.carried_until) = (CARRIES, self.odometer + CARRY);
         let horizon = f32::from(1 + CARRIES) * time_step;
+        let closing = |speed: f32| (speed * horizon).min(CARRY + speed * time_step);
         let mut queries = 0;
-        if self.odometer > self.valid_until {
-            queries += self.gather(body, support, state, margin + support.disc);
+        if self.odometer.reading(whole) > self.valid_until {
+            queries += self.gather(contacts, scene, state, margin + support.disc);
         }
+        (self.carries, self.carried_until) = (CARRIES, self.odometer.reading(whole) + CARRY);
         contacts.clear();
         for near in &mut self.near[..self.count] {
-            if near.sleeps_until > self.odometer {
+            let reading = self.odometer.reading(near.radius);
+            if near.sleeps_until > reading {
                 continue;
             }
             let index = near.index as usize;
             let arm = support.tree.points()[index] - state.centre;
             // What is near a pivot hardly moves, however fast the rest does.
-            let margin = margin + state.velocity_at(&arm).norm() * horizon;
+            let margin = margin + closing(state.velocity_at(&arm).norm());
             let at = body.centre + rotation.inverse_transform_vector(&arm);
             queries += 1;
-            // The value alone is cheaper, and enough for most.
-            let least = body.field.distance(&at) - support.disc;
-            if least > margin {
-                near.sleeps_until = self.odometer + least - margin;
-                continue;
-            }
-            let (gap, gradient) = body.field.sample(&at);
+            let (gap, gradient) = match body.field.sample_near(&at) {
+                Ok(sample) => sample,
+                Err(bound) => {
+                    near.sleeps_until = reading + (bound - margin).max(0.0);
+                    continue;
+                }
+            };
             // The rim of a disc comes closer than its centre, by no more than this.
             let normal = rotation.inverse_transform_vector(&support.normals[index]);
             let slope = gradient - normal * gradient.dot(&normal);
             let disc = support.disc_at(index);
             let least = gap - disc * slope.norm();
             if least > margin {
-                near.sleeps_until = self.odometer + least - margin;
+                near.sleeps_until = reading + least - margin;
                 continue;
             }
             queries += 1;
             let (at, gap, gradient) = nearest_on_disc(body, at, gap, gradient, slope, disc);
             if gap > margin {
-                near.sleeps_until = self.odometer + gap - margin;
+                near.sleeps_until = reading + gap - margin;
                 continue;
             }
             let normal = -(rotation * gradient);

@@ -8,6 +8,7 @@ mod clearance;
 mod contact;
 mod margin;
 mod motion;
+mod odometer;
 mod release;
 mod settle;
 mod solver;

@@ -92,8 +92,8 @@ impl<'a, 's> Motion<'a, 's> {
             shift += apart;
             turn += aside;
         }
+        self.neighbourhood.moves(state, &shift, &turn);
         state.advance(&shift, &turn);
-        self.neighbourhood.moved(shift.norm() + turn.norm() * body.reach);
         Ok(())
     }
 

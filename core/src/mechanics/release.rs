@@ -38,8 +38,8 @@ pub(crate) fn release_pose(
         } else {
             solver::separate(&state, &body.inverse_inertia_in(&state), &contacts, clearance + 2e-4)
         };
+        neighbourhood.moves(&state, &shift, &turn);
         state.advance(&shift, &turn);
-        neighbourhood.moved(shift.norm() + turn.norm() * body.reach);
     }
     Ok(best)
 }

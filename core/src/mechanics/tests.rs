@@ -144,7 +144,7 @@ fn plane(width: f32, depth: f32, place: impl Fn(Point) -> Point) -> Cloud {
     let normal = (place(Point::new(0.0, 0.0, 1.0)) - place(Point::origin())).normalize();
     let points = (1..=count).map(|i| {
         let i = i as f64;
-        at((i * 0.754_877_666) .fract() as f32, (i * 0.569_840_291).fract() as f32).into()
+        at((i * 0.754_877_666).fract() as f32, (i * 0.569_840_291).fract() as f32).into()
     });
     (points.collect(), vec![normal.into(); count])
 }
@@ -244,7 +244,10 @@ fn a_plate_on_a_slope_slides_beyond_the_friction_angle() {
                 let (sin, cos) = degrees.to_radians().sin_cos();
                 let pull = GRAVITY * (sin - friction * cos).max(0.0);
                 let expected = pull / 2.0 * (0.5 - (1.0 - (-1.0_f32).exp()) / 2.0);
-                assert!((gone - expected).abs() < 0.001 + 0.15 * expected, "{friction} {degrees}: {gone} {expected}");
+                assert!(
+                    (gone - expected).abs() < 0.001 + 0.15 * expected,
+                    "{friction} {degrees}: {gone} {expected}"
+                );
             });
         }
     }
@@ -315,7 +318,11 @@ fn energy_never_grows() {
     for (scene, release, name) in [
         (ring(), at(0.0, 0.01, 0.0) * on_rod(), "a ring let go beside the rod"),
         (ring(), at(0.0, 0.0, 0.005) * on_rod(), "a ring dropped on the rod"),
-        (plate, Pose::from_parts(Translation3::new(0.0, 0.0, 0.03), turned(Vector::new(0.6, 0.8, 0.0), 30.0)), "a plate dropped on its corner"),
+        (
+            plate,
+            Pose::from_parts(Translation3::new(0.0, 0.0, 0.03), turned(Vector::new(0.6, 0.8, 0.0), 30.0)),
+            "a plate dropped on its corner",
+        ),
     ] {
         for friction in [0.0, FRICTION] {
             scene.try_out(|lab| {
@@ -323,10 +330,13 @@ fn energy_never_grows() {
                 let mut first = f32::NAN;
                 lab.watch((&release, &DOWN), no_drag(friction), 1.5, |body, state| {
                     let inertia = body.inverse_inertia_in(state).try_inverse().unwrap();
-                    let kinetic = 0.5 * (state.velocity.norm_squared() + state.spin.dot(&(inertia * state.spin)));
+                    let kinetic =
+                        0.5 * (state.velocity.norm_squared() + state.spin.dot(&(inertia * state.spin)));
                     // Of a unit mass, as a height.
                     let energy = kinetic / GRAVITY + state.centre.z;
-                    if first.is_nan() { first = energy; }
+                    if first.is_nan() {
+                        first = energy;
+                    }
                     grown = grown.max(energy - least);
                     least = least.min(energy);
                 });
@@ -346,18 +356,18 @@ fn what_touches_nothing_falls() {
         let fallen = above.translation.z - end.translation.z;
         assert!(fallen > settle::most_sinking(&lab.body), "{fallen}");
         // The rod through the wire.
-        assert!(!lab.is_clear(&(at(0.0, 0.0, 0.003) * on_rod().rotation * at(0.0,0.0,0.0)), 0.0) || true);
+        assert!(!lab.is_clear(&(at(0.0, 0.0, 0.003) * on_rod().rotation * at(0.0, 0.0, 0.0)), 0.0) || true);
     });
 }
 
 #[test]
 fn a_ring_on_a_level_rod() {
     for length in [0.1, 0.05] {
-    Scene::new(ring(), rod(Vector::x(), length, 0.005)).try_out(|lab| {
-        let rest = lab.rest(&on_rod(), FRICTION);
-        let firm = lab.firmness(&rest);
-        std::println!("{length} {:?} {:?}", firm.margin, firm.contacts);
-    });
+        Scene::new(ring(), rod(Vector::x(), length, 0.005)).try_out(|lab| {
+            let rest = lab.rest(&on_rod(), FRICTION);
+            let firm = lab.firmness(&rest);
+            std::println!("{length} {:?} {:?}", firm.margin, firm.contacts);
+        });
     }
     let turn = turned(Vector::z(), 45.0);
     Scene::new(ring(), rod(turn * Vector::x(), 0.1, 0.005)).try_out(|lab| {

@@ -152,6 +152,19 @@ impl<'m> DistanceField<'m> {
         }
     }
 
+    /// The same as [`sample`](Self::sample) where the distance is interpolated, which it is all over the band, or else only a bound of
+    /// the distance, in metres: what is looked for at the surface need not know which way it is from afar.
+    pub(crate) fn sample_near(&self, point: &Point) -> Result<(f32, Vector), f32> {
+        let local = self.layout.in_voxels(point);
+        match self.layout.locate(&local) {
+            None => Err((local - self.layout.clamp(&local)).norm() * self.layout.voxel),
+            Some(at) => match Entry::unpack(self.grid[at.0]) {
+                Entry::Far(distance) => Err(self.bound(&local, at.0, distance)),
+                Entry::Brick(_) => Ok(self.sample_at(&local, at)),
+            },
+        }
+    }
+
     /// The same distance as [`sample`](Self::sample) gives, in metres, without the gradient.
     pub fn distance(&self, point: &Point) -> f32 {
         let local = self.layout.in_voxels(point);
