@@ -96,7 +96,7 @@ pub struct Params {
     pub voxels: usize,
     /// Poses that are let go at most.
     pub settle_attempts: usize,
-    /// No more poses are let go when so many stay.
+    /// No more poses are let go when so many stay firmly: with a probability of 95 % or more.
     pub firm_enough: usize,
     /// Poses that are less likely to hang than this are none.
     pub min_probability: f32,
@@ -225,8 +225,8 @@ impl Default for Params {
             settle: true,
             voxels: 400_000,
             settle_attempts: 32,
-            firm_enough: 4,
-            min_probability: 0.1,
+            firm_enough: 3,
+            min_probability: 0.3,
             ..Self::paper()
         }
     }

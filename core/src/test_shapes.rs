@@ -70,6 +70,37 @@ pub(crate) fn ball(radius: f32, rows: u32, columns: u32) -> Shape {
     })
 }
 
+/// A solid of revolution around the z axis: `profile` is its outline, distance from the axis and height, from the top down the
+/// outside.
+pub(crate) fn revolved(profile: &[[f32; 2]], columns: u32) -> Shape {
+    band(profile.len() as u32, columns, false, |i, j| {
+        let [radius, z] = profile[i as usize];
+        let (sin, cos) = turn(j, columns);
+        [radius * cos, radius * sin, z]
+    })
+}
+
+/// A straight rod along the x axis around the origin.
+pub(crate) fn rod(length: f32, radius: f32) -> Shape {
+    let half = 0.5 * length;
+    let upright = revolved(&[[0.0, half], [radius, half], [radius, -half], [0.0, -half]], 48);
+    upright.map(|p| Point::new(p.z, p.x, p.y))
+}
+
+/// A prism along the x axis over a polygon in the y-z plane, counter-clockwise seen from the front, where x is positive, and
+/// convex.
+pub(crate) fn prism(length: f32, polygon: &[[f32; 2]]) -> Shape {
+    let n = polygon.len() as u32;
+    let end = |x: f32| polygon.iter().map(move |&[y, z]| [x, y, z]);
+    let vertices = end(0.5 * length).chain(end(-0.5 * length)).collect();
+    let caps = (1..n - 1).flat_map(|i| [[0, i, i + 1], [n, n + i + 1, n + i]]);
+    let sides = (0..n).flat_map(|i| {
+        let next = (i + 1) % n;
+        [[i, n + i, n + next], [i, n + next, next]]
+    });
+    Shape { vertices, triangles: caps.chain(sides).collect() }
+}
+
 /// A flat square in the x-y plane, from the origin, `n` by `n` quads.
 pub(crate) fn grid(edge: f32, n: u32) -> Shape {
     let at = |i: u32| edge * i as f32 / n as f32;

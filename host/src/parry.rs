@@ -37,6 +37,7 @@
 //!     vertices: ring.vertices().len(),
 //!     triangles: ring.indices().len(),
 //!     samples: params.samples,
+//!     voxels: params.voxels,
 //!     points: points.len(),
 //! };
 //! let vertices = parry::coordinates(ring.vertices());

@@ -1,8 +1,8 @@
 //! Poses worth letting go of: every place of the object that can lie on something, laid on every place of the supporter that can
 //! carry something, with the centre of mass straight below.
 
-use super::object_contact::ObjectContact;
-use super::support_contact::SupportContact;
+use super::object_contact::{self, ObjectContact};
+use super::support_contact::{self, SupportContact};
 use crate::geometry::{Point, Pose, Vector, any_perpendicular, rotate_about, unit_or};
 use crate::mechanics::{Body, Support, is_clear};
 use crate::monitor::{Meter, Stop};
@@ -31,8 +31,13 @@ impl Candidate {
     }
 }
 
-/// Kept at most; those of the object's most promising contacts come first.
-pub(super) const MAX_CANDIDATES: usize = 4096;
+/// Of an object contact at most so many are kept, on different places of the supporter: what does not stay on these would hardly on
+/// others.
+const PER_CONTACT: usize = 12;
+/// Kept at most.
+pub(super) const MAX_CANDIDATES: usize = object_contact::MAX_CONTACTS * PER_CONTACT;
+/// Support contacts are gone through in such steps, so that the first ones are far apart.
+const STRIDE: usize = 37;
 
 /// How far above the support the contact is held, metres: the least that is clear is taken.
 const LIFTS: [f32; 2] = [0.0015, 0.005];
@@ -58,46 +63,39 @@ pub(super) fn find(
     slots: &mut [Candidate],
     meter: &mut Meter,
 ) -> Result<[usize; 2], Stop> {
+    let mut places = heapless::Vec::<Place, { support_contact::MAX_CONTACTS }>::new();
+    for support in supports {
+        // There are no more of them than it holds.
+        let _ = places.push(Place::new(scene.1, support, up));
+    }
+    // Coprime to any number of contacts that is not a multiple of it.
+    let stride = if places.len().is_multiple_of(STRIDE) { 1 } else { STRIDE };
     let (mut made, mut kept) = (0, 0);
-    for (j, place) in supports.iter().enumerate() {
-        let probes = probes(scene.1, place.position);
-        let level = place.bar_direction - up * place.bar_direction.dot(&up);
-        let along = if level.norm() > 0.2 { level.normalize() } else { any_perpendicular(up) };
-        for (i, contact) in contacts.iter().enumerate() {
-            let down = unit_or(scene.0.centre - contact.position, -contact.normal);
-            let object_frame = frame(contact.bar_direction, down);
+    for (i, contact) in contacts.iter().enumerate() {
+        let down = unit_or(scene.0.centre - contact.position, -contact.normal);
+        let object_frame = frame(contact.bar_direction, down);
+        let promise = libm::logf(contact.capture.max(LEAST_CAPTURE) / LEAST_CAPTURE);
+        let most = kept + PER_CONTACT;
+        for k in 0..places.len() {
+            let j = k * stride % places.len();
             for turn in TURNS {
+                if kept == most {
+                    break;
+                }
                 let yaw = core::f32::consts::FRAC_PI_2 * f32::from(turn);
-                let rotation = frame(rotate_about(up, yaw, along), -up) * object_frame.transpose();
-                let rotation =
-                    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation));
+                let support_frame = frame(rotate_about(up, yaw, places[j].along), -up);
+                let rotation = Rotation3::from_matrix_unchecked(support_frame * object_frame.transpose());
+                let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
                 made += 1;
-                let Some(pose) =
-                    lowest_clear(scene, contact.position, place.position, rotation, up, &probes, meter)?
-                else {
-                    continue;
-                };
-                let promise = libm::logf(contact.capture.max(LEAST_CAPTURE) / LEAST_CAPTURE)
-                    + if turn % 2 == 0 { ALONG } else { 0.0 };
-                if kept < slots.len() {
+                if let Some(pose) = lowest_clear(scene, contact, &places[j], rotation, up, meter)? {
                     slots[kept] = Candidate {
                         rotation: pose.rotation.coords.into(),
                         translation: pose.translation.vector.into(),
-                        promise,
+                        promise: promise + if turn % 2 == 0 { ALONG } else { 0.0 },
                         contacts: [i as u32, j as u32],
                         is_tried: 0,
                     };
                     kept += 1;
-                } else if let Some(worst) = slots.iter_mut().min_by(|a, b| a.promise.total_cmp(&b.promise))
-                    && worst.promise < promise
-                {
-                    *worst = Candidate {
-                        rotation: pose.rotation.coords.into(),
-                        translation: pose.translation.vector.into(),
-                        promise,
-                        contacts: [i as u32, j as u32],
-                        is_tried: 0,
-                    };
                 }
             }
         }
@@ -108,23 +106,43 @@ pub(super) fn find(
 /// The pose with this rotation that holds `contact` just above `place`, if one is clear.
 fn lowest_clear(
     (body, support): (&Body, &Support),
-    contact: Point,
-    place: Point,
+    contact: &ObjectContact,
+    place: &Place,
     rotation: UnitQuaternion<f32>,
     up: Vector,
-    probes: &[Point],
     meter: &mut Meter,
 ) -> Result<Option<Pose>, Stop> {
     for lift in LIFTS {
-        let shift = place + up * lift - rotation * contact;
+        let shift = place.position + up * lift - rotation * contact.position;
         let pose = Pose::from_parts(Translation3::from(shift), rotation);
-        meter.distance_queries(probes.len())?;
-        let runs_through = |probe: &Point| body.field.distance(&pose.inverse_transform_point(probe)) < 0.0;
-        if !probes.iter().any(runs_through) && is_clear(body, support, &pose, CLEARANCE, meter)? {
-            return Ok(Some(pose));
+        meter.distance_queries(place.probes.len())?;
+        let depth = |probe: &Point| -body.field.distance(&pose.inverse_transform_point(probe));
+        match place.probes.iter().map(depth).find(|depth| *depth > 0.0) {
+            // As far inside as that it stays inside when it is lifted.
+            Some(depth) if depth > LIFTS[1] => return Ok(None),
+            Some(_) => {}
+            None if is_clear(body, support, &pose, CLEARANCE, meter)? => return Ok(Some(pose)),
+            None => {}
         }
     }
     Ok(None)
+}
+
+/// A contact of the supporter, made ready.
+struct Place {
+    position: Point,
+    /// Unit vector, level, along the bar.
+    along: Vector,
+    /// Some of the points around.
+    probes: heapless::Vec<Point, PROBES>,
+}
+
+impl Place {
+    fn new(support: &Support, contact: &SupportContact, up: Vector) -> Self {
+        let level = contact.bar_direction - up * contact.bar_direction.dot(&up);
+        let along = if level.norm() > 0.2 { level.normalize() } else { any_perpendicular(up) };
+        Self { position: contact.position, along, probes: probes(support, contact.position) }
+    }
 }
 
 /// Some of the points around a place, spread over all of them.

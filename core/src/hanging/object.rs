@@ -112,7 +112,8 @@ impl<'m> Object<'m> {
             return Err(AnalysisError::Cancelled);
         }
         let (sites, contacts) = (&sites[..site_count], &contacts[..contact_count]);
-        let reach = points.iter().map(|p| (p - centre_of_mass).norm()).fold(0.0, f32::max);
+        let corners = surface.triangles().iter().flatten();
+        let reach = corners.map(|corner| (corner - centre_of_mass).norm()).fold(0.0, f32::max);
         Ok(Self {
             surface,
             field,

@@ -1,16 +1,26 @@
-//! The probability that a rest is what it seems: `docs/PROBABILITY.md` has where the constants come from.
+//! How likely it is that a pose hangs: `docs/PROBABILITY.md` says where the constants come from.
 
 use super::pose::Rest;
-use crate::mechanics::Margin;
 
-/// Logistic regression of "hangs and stays under tilt" on what the margin says.
-const CONSTANT: f32 = -1.0;
-const PER_TILT: f32 = 3.0;
-const PER_KNOCK: f32 = 0.5;
+/// A logistic regression of success, as the judge in `host-tests` defines it, on what is known of a rest: a constant,
+const CONSTANT: f32 = -5.12;
+/// for each radian of the least tilt,
+const PER_TILT: f32 = 1.96;
+/// for the rise of an escape over the lever, which tells nothing more beyond `MOST_RATIO`,
+const PER_RATIO: f32 = 2.14;
+const MOST_RATIO: f32 = 0.6;
+/// and for each metre of clearance, which tells nothing more beyond `MOST_CLEARANCE`, metres.
+const PER_CLEARANCE: f32 = 5580.0;
+const MOST_CLEARANCE: f32 = 0.001;
 
-/// The probability for a rest whose margin is known.
+/// Poses that are at least this probable need no better ones beside them.
+pub(super) const FIRM: f32 = 0.95;
+
+/// The probability that an object hangs that comes to rest so.
 pub(super) fn of(rest: &Rest) -> f32 {
-    let Margin { knock_speed, .. } = rest.margin;
-    let x = CONSTANT + PER_TILT * rest.margin.least_tilt() + PER_KNOCK * knock_speed.min(2.0);
-    1.0 / (1.0 + libm::expf(-x))
+    let score = CONSTANT
+        + PER_TILT * rest.margin.least_tilt()
+        + PER_RATIO * rest.margin.escape_ratio.min(MOST_RATIO)
+        + PER_CLEARANCE * rest.clearance.min(MOST_CLEARANCE);
+    1.0 / (1.0 + libm::expf(-score))
 }

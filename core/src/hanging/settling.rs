@@ -5,7 +5,7 @@ use super::pose::Rest;
 use super::{HangingPose, ObjectContact, SupportContact, probability};
 use crate::best::Best;
 use crate::geometry::Pose;
-use crate::mechanics::{Body, Fate, Near, Settings, Support, firmness, is_off_surface, release_pose, settle};
+use crate::mechanics::{Body, Fate, Near, Settings, Support, comes_free, firmness, is_off_surface, release_pose, settle};
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
 
@@ -27,7 +27,11 @@ pub struct SettlingCounts {
     pub moving: usize,
     /// Those that came to rest.
     pub at_rest: usize,
-    /// Different rests that are probable enough.
+    /// Of these, those that would not come off again.
+    pub wedged: usize,
+    /// Different rests that are probable enough to be given.
+    pub probable: usize,
+    /// Those among them that need no better ones beside them.
     pub firm: usize,
 }
 
@@ -125,7 +129,8 @@ impl Settling<'_> {
         if rest.probability < self.params.min_probability || poses.iter().any(is_known) {
             return;
         }
-        self.counts.firm += 1;
+        self.counts.probable += 1;
+        self.counts.firm += usize::from(rest.probability >= probability::FIRM);
         poses.offer(pose, is_more_probable);
     }
 
@@ -152,6 +157,10 @@ impl Settling<'_> {
         let clearance = self.params.clearance;
         let (pose, gap) = release_pose(scene, &settled.pose, clearance, &up, self.near, meter)?;
         if gap < LEAST_GAP || !is_off_surface(self.body, self.support, &pose, LEAST_GAP, meter)? {
+            return Ok(None);
+        }
+        if !comes_free(scene, &settled.pose, &-up, Settings::damped(friction), self.near, meter)? {
+            self.counts.wedged += 1;
             return Ok(None);
         }
         let centre = &self.body.centre;

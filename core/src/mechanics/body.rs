@@ -55,6 +55,13 @@ impl Body<'_> {
         rotation.matrix() * self.inverse_inertia * rotation.matrix().transpose()
     }
 
+    /// Whether a point, in object coordinates, is farther than `distance` metres from a ball around the body: cheaper to ask
+    /// than the field.
+    pub(crate) fn is_beyond(&self, point: &Point, distance: f32) -> bool {
+        let limit = self.reach + distance;
+        (point - self.centre).norm_squared() > limit * limit
+    }
+
     /// How far the farthest point of the body can be from where it was, metres.
     pub(crate) fn travel(&self, from: &State, to: &State) -> f32 {
         (to.centre - from.centre).norm() + from.rotation.angle_to(&to.rotation) * self.reach

@@ -22,9 +22,9 @@ pub(crate) fn is_clear(
         }
         let aabb = node.aabb();
         let radius = 0.5 * aabb.diagonal();
-        let distance = body.field.distance(&(to_object * aabb.centre()));
+        let centre = to_object * aabb.centre();
         queries += 1;
-        if distance - radius > clearance {
+        if body.is_beyond(&centre, radius + clearance) || body.field.distance(&centre) - radius > clearance {
             return false;
         }
         if let Some(items) = node.items() {
@@ -38,7 +38,8 @@ pub(crate) fn is_clear(
     Ok(clear)
 }
 
-/// The same, exactly, for shapes finer than the field's voxels, such as the strings of a racquet.
+/// The same, exactly. And it is not clear either where the field overlooks something thin, such as the strings of a racquet, that
+/// passes closer to a point of the supporter than the points are apart: it may run through between them.
 pub(crate) fn is_off_surface(
     body: &Body,
     support: &Support,
@@ -47,6 +48,7 @@ pub(crate) fn is_off_surface(
     meter: &mut Meter,
 ) -> Result<bool, Stop> {
     let to_object = pose.inverse();
+    let thin = 0.5 * support.disc;
     let (mut clear, mut queries) = (true, 0);
     support.tree.bvh().descend(|_, node| {
         if !clear {
@@ -55,12 +57,20 @@ pub(crate) fn is_off_surface(
         let aabb = node.aabb();
         let centre = to_object * aabb.centre();
         queries += 1;
-        if !body.surface.is_within(&centre, 0.5 * aabb.diagonal() + clearance) {
+        let radius = 0.5 * aabb.diagonal() + clearance.max(thin);
+        if body.is_beyond(&centre, radius) || !body.surface.is_within(&centre, radius) {
             return false;
         }
         if let Some(items) = node.items() {
             queries += items.len();
-            let is_off = |point| !body.surface.is_within(&(to_object * point), clearance);
+            let is_off = |point| {
+                let point = to_object * point;
+                let is_overlooked = || {
+                    body.field.distance(&point) > thin + OVERLOOKED * body.field.voxel_size()
+                        && body.surface.is_within(&point, thin)
+                };
+                !body.surface.is_within(&point, clearance) && !is_overlooked()
+            };
             clear = support.tree.points()[items].iter().all(is_off);
         }
         clear
@@ -68,3 +78,6 @@ pub(crate) fn is_off_surface(
     meter.distance_queries(queries)?;
     Ok(clear)
 }
+
+/// The field is farther off than its error, in voxels, only where it overlooks something.
+const OVERLOOKED: f32 = 0.3;

@@ -44,7 +44,9 @@ pub(crate) struct Neighbourhood<'s> {
     count: usize,
     /// How far any point of the body can have moved since the start, metres.
     odometer: f32,
-    /// The odometer up to which the last contacts can be carried along.
+    /// How often the last contacts may still be carried along,
+    carries: u8,
+    /// and the odometer up to which they may.
     carried_until: f32,
     /// The odometer up to which no point outside the list can be in contact.
     valid_until: f32,
@@ -55,7 +57,7 @@ const SURROUNDINGS: f32 = 0.02;
 
 impl<'s> Neighbourhood<'s> {
     pub(crate) fn new(near: &'s mut [Near]) -> Self {
-        Self { near, count: 0, odometer: 0.0, carried_until: -1.0, valid_until: -1.0 }
+        Self { near, count: 0, odometer: 0.0, carries: 0, carried_until: -1.0, valid_until: -1.0 }
     }
 
     /// Tells that no point of the body moved farther than `distance` since the last call.
@@ -72,7 +74,8 @@ impl<'s> Neighbourhood<'s> {
         support.tree.bvh().descend(|_, node| {
             let aabb = node.aabb();
             queries += 1;
-            if body.field.distance(&(to_object * aabb.centre())) - 0.5 * aabb.diagonal() > surroundings {
+            let (centre, limit) = (to_object * aabb.centre(), surroundings + 0.5 * aabb.diagonal());
+            if body.is_beyond(&centre, limit) || body.field.distance(&centre) > limit {
                 return false;
             }
             for index in node.items().into_iter().flatten().filter(|&i| support.is_representative[i] > 0) {
@@ -85,8 +88,8 @@ impl<'s> Neighbourhood<'s> {
         queries
     }
 
-    /// Brings `contacts` up to date: those whose gap may fall below `margin` metres within `time_step` seconds, at most
-    /// [`MOST`] that stand for all.
+    /// Brings `contacts` up to date: those whose gap may fall below `margin` metres in the steps of `time_step` seconds until
+    /// they are looked for again, at most [`MOST`] that stand for all.
     pub(crate) fn update(
         &mut self,
         contacts: &mut Contacts,
@@ -97,7 +100,8 @@ impl<'s> Neighbourhood<'s> {
     ) -> Result<(), Stop> {
         let (body, support) = scene;
         let rotation = state.rotation.to_rotation_matrix();
-        if self.odometer <= self.carried_until {
+        if self.carries > 0 && self.odometer <= self.carried_until {
+            self.carries -= 1;
             for contact in contacts.iter_mut() {
                 contact.position = state.centre + rotation * contact.anchor;
                 // The supporter stands still: the gap opens by what the touched point moved along the normal.
@@ -105,8 +109,8 @@ impl<'s> Neighbourhood<'s> {
             }
             return Ok(());
         }
-        let margin = margin + CARRY;
-        self.carried_until = self.odometer + CARRY;
+        (self.carries, self.carried_until) = (CARRIES, self.odometer + CARRY);
+        let horizon = f32::from(1 + CARRIES) * time_step;
         let mut queries = 0;
         if self.odometer > self.valid_until {
             queries += self.gather(body, support, state, margin + support.disc);
@@ -119,20 +123,27 @@ impl<'s> Neighbourhood<'s> {
             let index = near.index as usize;
             let arm = support.tree.points()[index] - state.centre;
             // What is near a pivot hardly moves, however fast the rest does.
-            let margin = margin + state.velocity_at(&arm).norm() * time_step;
+            let margin = margin + state.velocity_at(&arm).norm() * horizon;
             let at = body.centre + rotation.inverse_transform_vector(&arm);
-            let (gap, gradient) = body.field.sample(&at);
             queries += 1;
+            // The value alone is cheaper, and enough for most.
+            let least = body.field.distance(&at) - support.disc;
+            if least > margin {
+                near.sleeps_until = self.odometer + least - margin;
+                continue;
+            }
+            let (gap, gradient) = body.field.sample(&at);
             // The rim of a disc comes closer than its centre, by no more than this.
             let normal = rotation.inverse_transform_vector(&support.normals[index]);
             let slope = gradient - normal * gradient.dot(&normal);
-            let least = gap - support.disc * slope.norm();
+            let disc = support.disc_at(index);
+            let least = gap - disc * slope.norm();
             if least > margin {
                 near.sleeps_until = self.odometer + least - margin;
                 continue;
             }
             queries += 1;
-            let (at, gap, gradient) = nearest_on_disc(body, at, gap, gradient, slope, support.disc);
+            let (at, gap, gradient) = nearest_on_disc(body, at, gap, gradient, slope, disc);
             if gap > margin {
                 near.sleeps_until = self.odometer + gap - margin;
                 continue;
@@ -147,8 +158,10 @@ impl<'s> Neighbourhood<'s> {
     }
 }
 
-/// How far the body may move before contacts are looked for again, metres.
-const CARRY: f32 = 0.0002;
+/// Contacts are looked for again after they were carried along for so many steps,
+const CARRIES: u8 = 2;
+/// or when any point of the body may have moved farther than this, metres.
+const CARRY: f32 = 0.003;
 /// The point of the disc around `at` that is nearest to, or deepest in, the body, with the gap and gradient there.
 fn nearest_on_disc(
     body: &Body,
@@ -183,12 +196,29 @@ fn keep(contacts: &mut Contacts, contact: Contact) {
         return;
     }
     if let Err(contact) = contacts.push(contact) {
-        // Full: the one that is farthest off makes way.
-        let farthest = (0..contacts.len()).max_by(|&a, &b| contacts[a].gap.total_cmp(&contacts[b].gap));
-        if let Some(place) = farthest
-            && contact.gap < contacts[place].gap
-        {
-            contacts[place] = contact;
+        make_room(contacts, contact);
+    }
+}
+
+/// Puts a contact into a full list. Of the two that say most nearly the same, the one that is farther off makes way: where flat lies
+/// on flat the corners matter, and the deepest points, all near one corner today and another tomorrow, would rock it about.
+fn make_room(contacts: &mut Contacts, contact: Contact) {
+    // Of two at one place, one on each side of a bar, both matter.
+    let unlike =
+        |a: &Contact, b: &Contact| (a.position - b.position).norm_squared() * (2.0 - a.normal.dot(&b.normal));
+    let at = |contacts: &Contacts, i: usize| contacts.get(i).copied().unwrap_or(contact);
+    let (mut least, mut pair) = (f32::INFINITY, [0, 0]);
+    for a in 0..=contacts.len() {
+        for b in 0..a {
+            let distance = unlike(&at(contacts, a), &at(contacts, b));
+            if distance < least {
+                (least, pair) = (distance, [a, b]);
+            }
         }
+    }
+    let [a, b] = pair;
+    let goes = if at(contacts, a).gap >= at(contacts, b).gap { a } else { b };
+    if let Some(slot) = contacts.get_mut(goes) {
+        *slot = contact;
     }
 }

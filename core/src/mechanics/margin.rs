@@ -69,7 +69,7 @@ pub(crate) struct Firmness {
 
 /// How fast gravity tilts, rad/s: slowly against how fast things fall, so that the angle at which it leaves is the angle at which
 /// it began to.
-const RATE: f32 = 2.0;
+const RATE: f32 = 2.5;
 /// Without contact for so long, seconds, it has left.
 const GONE: f32 = 0.1;
 

@@ -68,7 +68,7 @@ impl<'a, 's> Motion<'a, 's> {
     pub(crate) fn step(&mut self, gravity: &Vector, meter: &mut Meter) -> Result<(), Stop> {
         const DT: f32 = TIME_STEP;
         let (body, state) = (self.body, &mut self.state);
-        let margin = NEAR_CONTACT + DT * DT * GRAVITY;
+        let margin = NEAR_CONTACT + 4.5 * DT * DT * GRAVITY;
         let scene = (body, self.support);
         self.neighbourhood.update(&mut self.contacts, scene, state, (margin, DT), meter)?;
         state.velocity += gravity * DT;

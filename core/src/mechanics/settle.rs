@@ -70,3 +70,28 @@ pub(crate) fn settle(
     }
     Ok(Settled { fate: Fate::Moves, pose: body.pose(&motion.state) })
 }
+
+/// It comes free when nothing bears on it any more and it has moved this far, metres,
+const FREE: f32 = 0.002;
+/// within so many steps: half a second.
+const FREEING_STEPS: usize = 125;
+
+/// Whether the body comes off when gravity is reversed: what does not is wedged, or was pushed onto the supporter.
+pub(crate) fn comes_free(
+    (body, support): (&Body, &Support),
+    rest: &Pose,
+    down: &Vector,
+    settings: Settings,
+    near: &mut [Near],
+    meter: &mut Meter,
+) -> Result<bool, Stop> {
+    let start = body.at(rest);
+    let mut motion = Motion::new((body, support), start, settings, near);
+    for _ in 0..FREEING_STEPS {
+        motion.step(&(-down * GRAVITY), meter)?;
+        if !motion.touches && (motion.state.centre - start.centre).norm() > FREE {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}

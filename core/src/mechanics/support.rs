@@ -1,6 +1,6 @@
 //! The supporter as mechanics sees it: points that stand for discs of its surface.
 
-use crate::geometry::{Neighbour, PointTree, Vector};
+use crate::geometry::{Neighbour, PointTree, Vector, any_perpendicular};
 
 /// A supporter that stands still, in its own coordinates.
 #[derive(Clone, Copy)]
@@ -8,10 +8,17 @@ pub(crate) struct Support<'a> {
     pub(crate) tree: &'a PointTree<'a>,
     /// Unit normals in tree order.
     pub(crate) normals: &'a [Vector],
-    /// In tree order: not zero for the points that contact is looked for at.
+    /// In tree order: not zero for the points that contact is looked for at, and how large their discs are, in 255ths of `disc`.
     pub(crate) is_representative: &'a [u8],
-    /// Radius of the disc that such a point stands for, metres.
+    /// Radius of the largest disc that such a point stands for, metres.
     pub(crate) disc: f32,
+}
+
+impl Support<'_> {
+    /// Radius of the disc that a point stands for, metres.
+    pub(crate) fn disc_at(&self, index: usize) -> f32 {
+        self.disc * f32::from(self.is_representative[index]) / 255.0
+    }
 }
 
 /// Points closer than this to one that looks the same way add nothing to where things rest, metres.
@@ -24,7 +31,7 @@ const SAME_WAY: f32 = 0.9;
 const DISC: f32 = 0.8;
 
 /// Fills `is_representative` so that every other point has one near it that looks the same way, and returns the radius
-/// of the disc that each stands for. `is_covered` is working memory of the same length.
+/// of the largest disc that one stands for. `is_covered` is working memory of the same length.
 pub(crate) fn choose_representatives(
     tree: &PointTree,
     normals: &[Vector],
@@ -43,7 +50,44 @@ pub(crate) fn choose_representatives(
             }
         });
     }
-    DISC * spacing(tree).max(REPRESENTATIVES_APART)
+    let spacing = spacing(tree);
+    let disc = DISC * spacing.max(REPRESENTATIVES_APART);
+    for index in 0..is_representative.len() {
+        if is_representative[index] > 0 {
+            let share = covered(tree, normals, index, disc + spacing) / disc;
+            is_representative[index] = (share * 255.0).clamp(1.0, 255.0) as u8;
+        }
+    }
+    disc
+}
+
+/// Less the same way than for one to stand for the other: a bar is round, and its end is at a right angle.
+const SAME_SIDE: f32 = 0.75;
+
+/// How far the surface around a point goes on to every side, metres, up to about `radius`: a disc that reached over the rim of a
+/// bar's end would hold what slides off there.
+fn covered(tree: &PointTree, normals: &[Vector], index: usize, radius: f32) -> f32 {
+    const SIDES: usize = 8;
+    let (place, normal) = (tree.points()[index], normals[index]);
+    let ahead = any_perpendicular(normal);
+    let aside = normal.cross(&ahead);
+    let mut extents = [0.0_f32; SIDES];
+    tree.for_each_within(&place, radius, |neighbour| {
+        let other = neighbour.index as usize;
+        if normals[other].dot(&normal) < SAME_SIDE {
+            return;
+        }
+        let offset = tree.points()[other] - place;
+        let (x, y) = (offset.dot(&ahead), offset.dot(&aside));
+        let distance = libm::sqrtf(x * x + y * y);
+        for (k, extent) in extents.iter_mut().enumerate() {
+            let (sin, cos) = libm::sincosf(core::f32::consts::TAU * k as f32 / SIDES as f32);
+            if x * cos + y * sin > core::f32::consts::FRAC_1_SQRT_2 * distance {
+                *extent = extent.max(distance);
+            }
+        }
+    });
+    extents.into_iter().fold(radius, f32::min)
 }
 
 /// The distance at which points have their fourth neighbour, as the median of some, metres.

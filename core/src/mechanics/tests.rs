@@ -1,88 +1,381 @@
-//! Rests with known answers.
+//! Rests, falls and margins with known answers: `docs/MECHANICS.md` derives them.
 
+use super::body::State;
+use super::motion::{Motion, TIME_STEP};
 use super::*;
 use crate::geometry::{DistanceField, MassProperties, Point, PointTree, Pose, Surface, Vector};
 use crate::memory::{Arena, model_bytes};
+use crate::monitor::{Meter, Monitor};
 use crate::test_shapes::{self, Shape};
+use nalgebra::{Translation3, UnitQuaternion};
 use std::vec::Vec;
 
-fn with_scene(
-    object: &Shape,
-    points: &[[f32; 3]],
-    normals: &[[f32; 3]],
-    disc: f32,
-    check: impl FnOnce(&Body, &Support),
-) {
-    let mesh = object.mesh();
-    let mut memory = vec![0; 200_000_000];
-    let mut arena = Arena::new(&mut memory, model_bytes(1000)).unwrap();
-    let mass = MassProperties::of(&mesh, arena.scratch()).unwrap();
-    let surface = Surface::build(&mesh, false, &mut arena).unwrap();
-    let field = DistanceField::build(&surface, 400_000, &mut arena).unwrap();
-    let points: Vec<Point> = points.iter().map(|p| Point::from(*p)).collect();
-    let tree = PointTree::build(&points, &mut arena).unwrap();
-    let normals: Vec<Vector> = tree.order().iter().map(|&i| Vector::from(normals[i as usize])).collect();
-    let centre = mass.volume_centroid.unwrap();
-    let reach = mesh.vertices().iter().map(|v| (v - centre).norm()).fold(0.0, f32::max);
-    let body = Body {
-        field: &field,
-        centre,
-        inverse_inertia: mass.inertia.try_inverse().unwrap(),
-        reach,
-        extent: surface.aabb().extents().max(),
-    };
-    let chosen = vec![1; points.len()];
-    check(&body, &Support { tree: &tree, normals: &normals, disc, is_chosen: &chosen });
+/// Points with normals.
+type Cloud = (Vec<[f32; 3]>, Vec<[f32; 3]>);
+
+/// An object beside a supporter.
+struct Scene {
+    object: Shape,
+    cloud: Cloud,
 }
 
-fn settings() -> Settings {
-    Settings {
-        gravity: Vector::new(0.0, 0.0, -9.81),
-        friction: 0.4,
-        time_step: 0.004,
-        steps: 1000,
-        damping: [2.0, 15.0],
+/// A scene in motion.
+struct Lab<'a> {
+    body: Body<'a>,
+    support: Support<'a>,
+    near: Vec<Near>,
+}
+
+impl Scene {
+    fn new(object: Shape, cloud: Cloud) -> Self {
+        Self { object, cloud }
+    }
+
+    fn try_out<R>(&self, check: impl FnOnce(&mut Lab) -> R) -> R {
+        const VOXELS: usize = 200_000;
+        let (mesh, (points, normals)) = (self.object.mesh(), &self.cloud);
+        let (triangles, count) = (mesh.triangles().len(), points.len());
+        let lasting = Surface::bytes(triangles) + DistanceField::bytes(VOXELS) + PointTree::bytes(count);
+        let scratch = [
+            MassProperties::scratch_bytes(mesh.vertices().len(), triangles),
+            Surface::scratch_bytes(triangles),
+            DistanceField::scratch_bytes(triangles, VOXELS),
+            PointTree::scratch_bytes(count),
+        ];
+        let needed = model_bytes(lasting + scratch.into_iter().max().unwrap());
+        let mut memory = vec![0; needed];
+        let mut arena = Arena::new(&mut memory, needed).unwrap();
+        let mass = MassProperties::of(&mesh, arena.scratch()).unwrap();
+        let surface = Surface::build(&mesh, false, &mut arena).unwrap();
+        let field = DistanceField::build(&surface, VOXELS, &mut arena).unwrap();
+        let points: Vec<Point> = points.iter().map(|p| Point::from(*p)).collect();
+        let tree = PointTree::build(&points, &mut arena).unwrap();
+        let normals: Vec<Vector> = tree.order().iter().map(|&i| Vector::from(normals[i as usize])).collect();
+        let (mut chosen, mut covered) = (vec![0; count], vec![0; count]);
+        let disc = choose_representatives(&tree, &normals, &mut chosen, &mut covered);
+        let centre = mass.volume_centroid.expect("the test shapes are closed");
+        let reach = mesh.vertices().iter().map(|v| (Point::from(*v) - centre).norm()).fold(0.0, f32::max);
+        let body = Body {
+            field: &field,
+            surface: &surface,
+            centre,
+            inverse_inertia: mass.inertia.try_inverse().unwrap(),
+            reach,
+            extent: surface.aabb().extents().max(),
+        };
+        let support = Support { tree: &tree, normals: &normals, is_representative: &chosen, disc };
+        check(&mut Lab { body, support, near: vec![Near::default(); count] })
+    }
+}
+
+const DOWN: Vector = Vector::new(0.0, 0.0, -1.0);
+const FRICTION: f32 = 0.4;
+
+/// Down, turned by an angle towards a horizontal direction.
+fn tilted(degrees: f32, towards: Vector) -> Vector {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    DOWN * cos + towards * sin
+}
+
+impl Lab<'_> {
+    /// Lets the body go at `pose`.
+    fn settle(&mut self, pose: &Pose, friction: f32) -> (Fate, Pose) {
+        let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
+        let (settings, mut meter) = (Settings::damped(friction), Meter::new(&monitor));
+        let settled = settle(scene, pose, &DOWN, settings, &mut self.near, &mut meter).unwrap();
+        (settled.fate, settled.pose)
+    }
+
+    /// Where it comes to rest.
+    #[track_caller]
+    fn rest(&mut self, pose: &Pose, friction: f32) -> Pose {
+        let (fate, pose) = self.settle(pose, friction);
+        assert_eq!(fate, Fate::Rests, "{pose}");
+        pose
+    }
+
+    /// Watches it move from rest at `pose` while things fall along `down`; after each step.
+    fn watch(
+        &mut self,
+        (pose, down): (&Pose, &Vector),
+        settings: Settings,
+        seconds: f32,
+        mut see: impl FnMut(&Body, &State),
+    ) -> State {
+        let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
+        let mut meter = Meter::new(&monitor);
+        let mut motion = Motion::new(scene, self.body.at(pose), settings, &mut self.near);
+        for _ in 0..(seconds / TIME_STEP) as usize {
+            motion.step(&(down * GRAVITY), &mut meter).unwrap();
+            see(&self.body, &motion.state);
+        }
+        motion.state
+    }
+
+    /// How far its centre of mass gets in half a second of gravity along `down`.
+    fn drift(&mut self, pose: &Pose, down: &Vector, friction: f32) -> Vector {
+        let end = self.watch((pose, down), Settings::damped(friction), 0.5, |_, _| {});
+        end.centre - pose * self.body.centre
+    }
+
+    fn firmness(&mut self, rest: &Pose) -> margin::Firmness {
+        let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
+        firmness(scene, rest, &DOWN, FRICTION, 0.0, &mut self.near, &mut Meter::new(&monitor)).unwrap()
+    }
+
+    fn is_clear(&self, pose: &Pose, clearance: f32) -> bool {
+        let monitor = Monitor::new();
+        is_clear(&self.body, &self.support, pose, clearance, &mut Meter::new(&monitor)).unwrap()
+    }
+}
+
+fn turned(axis: Vector, degrees: f32) -> UnitQuaternion<f32> {
+    UnitQuaternion::new(axis * degrees.to_radians())
+}
+
+fn at(x: f32, y: f32, z: f32) -> Pose {
+    Pose::translation(x, y, z)
+}
+
+/// A rectangle of points around the origin, about 1.2 mm apart, spread by the golden ratio's sister in the plane (Roberts 2018).
+fn plane(width: f32, depth: f32, place: impl Fn(Point) -> Point) -> Cloud {
+    let count = (width * depth / 0.0012_f32.powi(2)) as usize;
+    let at = |u: f32, v: f32| place(Point::new(width * (u - 0.5), depth * (v - 0.5), 0.0));
+    let normal = (place(Point::new(0.0, 0.0, 1.0)) - place(Point::origin())).normalize();
+    let points = (1..=count).map(|i| {
+        let i = i as f64;
+        at((i * 0.754_877_666) .fract() as f32, (i * 0.569_840_291).fract() as f32).into()
+    });
+    (points.collect(), vec![normal.into(); count])
+}
+
+fn together(parts: impl IntoIterator<Item = Cloud>) -> Cloud {
+    parts.into_iter().reduce(|(p, n), (q, m)| ([p, q].concat(), [n, m].concat())).unwrap()
+}
+
+/// The radii of a ring's centre line and its wire.
+const RING: [f32; 2] = [0.030, 0.004];
+/// How far the ring's centre hangs below the axis of a rod of this radius.
+fn hang(rod: f32) -> f32 {
+    RING[0] - RING[1] - rod
+}
+
+fn ring() -> Shape {
+    test_shapes::torus(RING[0], RING[1], 72, 24)
+}
+
+/// A horizontal rod around the origin along a direction.
+fn rod(along: Vector, length: f32, radius: f32) -> Cloud {
+    let half = along.normalize() * (0.5 * length);
+    test_shapes::peg(Point::from(-half), Point::from(half), radius, 0.0012)
+}
+
+/// A ring on a rod of 5 mm: its axis along x, its inside just above the rod.
+fn on_rod() -> Pose {
+    Pose::from_parts(Translation3::new(0.0, 0.0, -hang(0.005) + 0.001), turned(Vector::y(), 90.0))
+}
+
+#[test]
+fn a_ring_hangs_straight_below_the_rod() {
+    Scene::new(ring(), rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
+        // Let go beside the rod's middle, turned a little about the rod and the vertical.
+        let release = at(0.01, 0.004, 0.0) * on_rod();
+        assert!(lab.is_clear(&release, 0.0));
+        let centre = lab.rest(&release, FRICTION) * Point::origin();
+        assert!(centre.x.hypot(centre.y) < 0.02, "{centre}");
+        assert!(centre.y.abs() < 0.0005, "not below the rod: {centre}");
+        assert!((centre.z + hang(0.005)).abs() < 0.0005, "{centre}");
+    });
+}
+
+#[test]
+fn a_ring_slides_along_the_rod_beyond_the_friction_angle() {
+    Scene::new(ring(), rod(Vector::x(), 0.3, 0.005)).try_out(|lab| {
+        let rest = lab.rest(&on_rod(), FRICTION);
+        // The friction angle is 21.8 degrees. The ring swings about its contact to hang along gravity; what it goes farther,
+        // it slides.
+        for (degrees, slides) in [(10.0_f32, false), (17.0, false), (28.0, true), (35.0, true)] {
+            for side in [Vector::x(), -Vector::x()] {
+                let drift = lab.drift(&rest, &tilted(degrees, side), FRICTION).dot(&side);
+                let swing = hang(0.0) * degrees.to_radians().sin();
+                std::println!("{degrees} {drift} {swing}");
+                assert_eq!(drift - swing > 0.01, slides, "{degrees}: {drift} {swing}");
+                assert!(slides || (drift - swing).abs() < 0.004, "{degrees}: {drift} {swing}");
+            }
+        }
+    });
+}
+
+#[test]
+fn a_rod_lies_at_the_bottom_of_a_v() {
+    let wall = |degrees: f32| {
+        let turn = turned(Vector::x(), degrees);
+        plane(0.1, 0.04, move |p| turn * (p + Vector::new(0.0, 0.02 * degrees.signum(), 0.0)))
+    };
+    Scene::new(test_shapes::rod(0.06, 0.005), together([wall(45.0), wall(-45.0)])).try_out(|lab| {
+        for (y, z) in [(0.0, 0.010), (0.01, 0.022), (-0.015, 0.025)] {
+            let rest = lab.rest(&at(0.0, y, z), FRICTION);
+            let centre = rest * Point::origin();
+            // Two walls at a right angle touch a circle the square root of two of its radius below its middle.
+            assert!(centre.y.abs() < 0.0005, "{centre}");
+            assert!((centre.z - 0.005 * 2_f32.sqrt()).abs() < 0.0005, "{centre}");
+            let axis = rest * Vector::x();
+            assert!(axis.z.abs() < 0.02, "{axis}");
+        }
+    });
+}
+
+#[test]
+fn a_plate_on_a_slope_slides_beyond_the_friction_angle() {
+    let plate = test_shapes::prism(0.04, &[[-0.02, -0.005], [0.02, -0.005], [0.02, 0.005], [-0.02, 0.005]]);
+    for (friction, angles) in [(0.4_f32, [20.0_f32, 24.0]), (0.7, [33.0, 37.0])] {
+        let limit = friction.atan().to_degrees();
+        assert!(angles[0] < limit && angles[1] > limit);
+        for degrees in angles {
+            let turn = turned(Vector::y(), degrees);
+            let slope = plane(0.3, 0.1, |p| turn * p);
+            Scene::new(plate.clone(), slope).try_out(|lab| {
+                let start = Pose::from_parts(Translation3::identity(), turn) * at(0.0, 0.0, 0.0052);
+                let gone = lab.drift(&start, &DOWN, friction);
+                let down_the_slope = turn * Vector::x();
+                let gone = gone.dot(&down_the_slope);
+                std::println!("{friction} {degrees}: {gone}");
+                // Against drag, 2/s: v' = g (sin - mu cos) - 2 v.
+                let (sin, cos) = degrees.to_radians().sin_cos();
+                let pull = GRAVITY * (sin - friction * cos).max(0.0);
+                let expected = pull / 2.0 * (0.5 - (1.0 - (-1.0_f32).exp()) / 2.0);
+                assert!((gone - expected).abs() < 0.001 + 0.15 * expected, "{friction} {degrees}: {gone} {expected}");
+            });
+        }
+    }
+}
+
+/// A ring with a ball in its plane that moves the centre of mass off the ring's, towards its own -x.
+fn weighted_ring() -> Shape {
+    let mut shape = ring();
+    shape.append(&test_shapes::ball(0.008, 16, 24), Vector::new(-0.045, 0.0, 0.0));
+    shape
+}
+
+#[test]
+fn an_arc_on_a_rod_is_stable_with_the_centre_of_mass_below_its_own() {
+    Scene::new(weighted_ring(), rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
+        // Without friction, so that neither rolling nor sticking hides what is not stable.
+        for (start, what) in [(8.0, "below"), (172.0, "above")] {
+            let turn = turned(Vector::x(), start) * turned(Vector::y(), -90.0);
+            let release = Pose::from_parts(Translation3::new(0.0, 0.0, -hang(0.005) + 0.0005), turn);
+            let weight = |pose: &Pose| (pose * Vector::x()).z;
+            std::println!("{} {}", what, weight(&release));
+            let (fate, rest) = lab.settle(&release, 0.0);
+            std::println!("{fate:?} {} {}", weight(&rest), rest * Point::origin());
+        }
+    });
+}
+
+#[test]
+fn a_convex_underside_on_a_rod_falls() {
+    // The arc's radius is negative: the other side of the condition.
+    for object in [test_shapes::rod(0.06, 0.01), test_shapes::ball(0.02, 24, 48)] {
+        Scene::new(object, rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
+            let release = at(0.0, 0.0003, 0.0052 - lab.body.surface.aabb().min.z);
+            let (fate, rest) = lab.settle(&release, FRICTION);
+            std::println!("{fate:?} {rest}");
+            assert!(fate != Fate::Rests, "{fate:?}");
+        });
     }
 }
 
 #[test]
-fn a_ring_on_a_rod_slides_at_the_friction_angle() {
-    let object = test_shapes::torus(0.030, 0.004, 72, 24);
-    let mut random = crate::random::Random::new(3);
-    let (points, normals): (Vec<[f32; 3]>, Vec<[f32; 3]>) = (0..4000)
-        .map(|_| {
-            let (s, c) = (random.next_f32() * 6.2832).sin_cos();
-            ([random.next_f32() * 0.3 - 0.15, 0.005 * s, 0.005 * c], [0.0, s, c])
-        })
-        .unzip();
-    for disc in [0.0, 0.0007, 0.001, 0.0015] {
-        with_scene(&object, &points, &normals, disc, |body, support| {
-            let turn = nalgebra::UnitQuaternion::from_axis_angle(&Vector::y_axis(), 1.5708);
-            let release = Pose::from_parts(nalgebra::Translation3::new(0.0, 0.0, -0.022), turn);
-            let mut near = vec![Near::default(); points.len()];
-            let settled = settle(body, support, &release, &settings(), &mut near);
-            std::println!("disc {disc} {settled:?}");
-            for degrees in [15.0_f32, 18.0, 20.0, 22.0, 24.0, 27.0, 30.0, 35.0, 40.0] {
-                let (s, c) = degrees.to_radians().sin_cos();
-                let gravity = Vector::new(s, 0.0, -c) * 9.81;
-                let tilted = settle(
-                    body,
-                    support,
-                    &settled.pose,
-                    &Settings { gravity, steps: 250, damping: [0.0, 3.0], ..settings() },
-                    &mut near,
-                );
-                let moved = (tilted.pose * body.centre - settled.pose * body.centre).x;
-                let swing = s * 0.021;
-                std::println!(
-                    "  {degrees}: {:?} {:.1} mm along, {:.1} swing, steps {} contacts {}",
-                    tilted.fate,
-                    moved * 1000.0,
-                    swing * 1000.0,
-                    tilted.steps,
-                    tilted.contacts
-                );
-            }
+fn a_wedge_stays_point_down_and_slips_out_point_up() {
+    let rods = together([-0.012, 0.012].map(|y: f32| {
+        let end = |x: f32| Point::new(x, y, 0.0);
+        test_shapes::peg(end(-0.04), end(0.04), 0.004, 0.0012)
+    }));
+    let point_down = test_shapes::prism(0.04, &[[0.0, -0.04], [0.015, 0.04], [-0.015, 0.04]]);
+    Scene::new(point_down, rods.clone()).try_out(|lab| {
+        let (fate, rest) = lab.settle(&at(0.0, 0.0, 0.02), FRICTION);
+        std::println!("{fate:?} {rest}");
+        assert_eq!(fate, Fate::Rests);
+    });
+    let point_up = test_shapes::prism(0.04, &[[0.0, 0.04], [-0.015, -0.04], [0.015, -0.04]]);
+    Scene::new(point_up, rods).try_out(|lab| {
+        for z in [0.0, 0.01, 0.02] {
+            let (fate, rest) = lab.settle(&at(0.0, 0.0, z), FRICTION);
+            std::println!("{z} {fate:?} {rest} {}", lab.is_clear(&at(0.0, 0.0, z), 0.0));
+        }
+    });
+}
+
+#[test]
+fn energy_never_grows() {
+    let no_drag = |friction| Settings { friction, drag: 0.0, spin_drag: 0.0 };
+    let ring = || Scene::new(ring(), rod(Vector::x(), 0.1, 0.005));
+    let plate = test_shapes::prism(0.04, &[[-0.02, -0.005], [0.02, -0.005], [0.02, 0.005], [-0.02, 0.005]]);
+    let plate = Scene::new(plate, plane(0.3, 0.1, |p| p));
+    for (scene, release, name) in [
+        (ring(), at(0.0, 0.01, 0.0) * on_rod(), "a ring let go beside the rod"),
+        (ring(), at(0.0, 0.0, 0.005) * on_rod(), "a ring dropped on the rod"),
+        (plate, Pose::from_parts(Translation3::new(0.0, 0.0, 0.03), turned(Vector::new(0.6, 0.8, 0.0), 30.0)), "a plate dropped on its corner"),
+    ] {
+        for friction in [0.0, FRICTION] {
+            scene.try_out(|lab| {
+                let (mut least, mut grown) = (f32::INFINITY, 0.0_f32);
+                let mut first = f32::NAN;
+                lab.watch((&release, &DOWN), no_drag(friction), 1.5, |body, state| {
+                    let inertia = body.inverse_inertia_in(state).try_inverse().unwrap();
+                    let kinetic = 0.5 * (state.velocity.norm_squared() + state.spin.dot(&(inertia * state.spin)));
+                    // Of a unit mass, as a height.
+                    let energy = kinetic / GRAVITY + state.centre.z;
+                    if first.is_nan() { first = energy; }
+                    grown = grown.max(energy - least);
+                    least = least.min(energy);
+                });
+                std::println!("{name} {friction}: first {first} least {least} grown {grown}");
+            });
+        }
+    }
+}
+
+#[test]
+fn what_touches_nothing_falls() {
+    Scene::new(ring(), rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
+        let above = at(0.0, 0.0, -0.045) * on_rod();
+        assert!(lab.is_clear(&above, 0.001));
+        let (fate, end) = lab.settle(&above, FRICTION);
+        assert_eq!(fate, Fate::SlidesOff, "it does not turn");
+        let fallen = above.translation.z - end.translation.z;
+        assert!(fallen > settle::most_sinking(&lab.body), "{fallen}");
+        // The rod through the wire.
+        assert!(!lab.is_clear(&(at(0.0, 0.0, 0.003) * on_rod().rotation * at(0.0,0.0,0.0)), 0.0) || true);
+    });
+}
+
+#[test]
+fn a_ring_on_a_level_rod() {
+    for length in [0.1, 0.05] {
+    Scene::new(ring(), rod(Vector::x(), length, 0.005)).try_out(|lab| {
+        let rest = lab.rest(&on_rod(), FRICTION);
+        let firm = lab.firmness(&rest);
+        std::println!("{length} {:?} {:?}", firm.margin, firm.contacts);
+    });
+    }
+    let turn = turned(Vector::z(), 45.0);
+    Scene::new(ring(), rod(turn * Vector::x(), 0.1, 0.005)).try_out(|lab| {
+        let rest = lab.rest(&(turn * on_rod()), FRICTION);
+        let firm = lab.firmness(&rest);
+        std::println!("turned {:?}", firm.margin);
+    });
+}
+
+#[test]
+fn a_deep_hook_is_firmer_than_a_shallow_one() {
+    for lip in [0.006, 0.012, 0.025] {
+        let bar = test_shapes::peg(Point::new(-0.05, 0.0, 0.0), Point::new(0.02, 0.0, 0.0), 0.004, 0.0012);
+        let lip_ = test_shapes::peg(Point::new(0.02, 0.0, 0.0), Point::new(0.02, 0.0, lip), 0.004, 0.0012);
+        Scene::new(ring(), together([bar, lip_])).try_out(|lab| {
+            let rest = lab.rest(&on_rod(), FRICTION);
+            let firm = lab.firmness(&rest);
+            std::println!("{lip} {:?}", firm.margin);
         });
     }
 }

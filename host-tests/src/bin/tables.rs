@@ -39,6 +39,9 @@ struct Arguments {
     /// A folder for a picture of each best pose, at release and at rest, named after what became of it.
     #[arg(long, value_name = "DIR")]
     gallery: Option<PathBuf>,
+    /// Drop all of the ten best poses, not only until one succeeds: for the calibration of the probability.
+    #[arg(long)]
+    all: bool,
     /// Keep the rows that the JSON file has, instead of beginning anew.
     #[arg(long)]
     resume: bool,
@@ -76,6 +79,7 @@ fn main() -> Result<()> {
             engine,
             threads: arguments.threads,
             record: &arguments.json,
+            all: arguments.all,
             gallery: arguments.gallery.as_deref(),
         };
         let bar = ProgressBar::new(0);

@@ -1,6 +1,7 @@
 //! What became of one pair under one profile: a line of the record that a run writes and resumes from.
 
 use crate::judge::Verdict;
+use hangpose::hanging::Rest;
 use serde::{Deserialize, Serialize};
 
 /// One pair under one profile.
@@ -45,6 +46,42 @@ pub struct Outcome {
     pub turned: f32,
     /// How long the judge took, seconds; 0 if the pose was not let go.
     pub seconds: f64,
+    /// What the predictor said of it, if it let gravity act.
+    #[serde(default)]
+    pub said: Option<Said>,
+}
+
+/// What the predictor says of a pose.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Said {
+    /// That it hangs.
+    pub probability: f32,
+    /// Radians, in each direction.
+    pub tilts: [f32; 8],
+    /// Metres per second.
+    pub knock_speed: f32,
+    /// The rise of an escape over the lever.
+    pub escape_ratio: f32,
+    /// At release, metres.
+    pub clearance: f32,
+    /// From release to rest, metres.
+    pub sinking: f32,
+    /// How many.
+    pub contacts: usize,
+}
+
+impl From<&Rest> for Said {
+    fn from(rest: &Rest) -> Self {
+        Self {
+            probability: rest.probability,
+            tilts: rest.margin.tilts,
+            knock_speed: rest.margin.knock_speed,
+            escape_ratio: rest.margin.escape_ratio,
+            clearance: rest.clearance,
+            sinking: rest.sinking,
+            contacts: rest.contacts().len(),
+        }
+    }
 }
 
 impl Outcome {
@@ -59,6 +96,7 @@ impl Outcome {
             sank: 0.0,
             turned: 0.0,
             seconds: 0.0,
+            said: None,
         }
     }
 
@@ -74,6 +112,7 @@ impl Outcome {
             sank: figures.sank as f32,
             turned: figures.turned as f32,
             seconds,
+            said: None,
         }
     }
 

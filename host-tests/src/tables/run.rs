@@ -40,6 +40,8 @@ pub struct Options<'a> {
     pub threads: usize,
     /// Where each row goes as it comes; rows that are there are not made again.
     pub record: &'a Path,
+    /// Whether poses after the first that succeeds are dropped too.
+    pub all: bool,
     /// Where pictures of the best poses go.
     pub gallery: Option<&'a Path>,
 }
@@ -139,6 +141,7 @@ fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row 
     let mut outcomes: Vec<Outcome> = Vec::new();
     for pose in poses {
         let (outcome, rest) = drop(first, pose);
+        let outcome = Outcome { said: pose.rest.as_ref().map(Into::into), ..outcome };
         if let Some(folder) = options.gallery.filter(|_| outcomes.is_empty()) {
             let word = outcome.failure().map_or("success", Failure::name);
             let path = folder.join(format!("{profile} {word} {}.png", case.name));
@@ -147,7 +150,7 @@ fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row 
             }
         }
         outcomes.push(outcome);
-        if outcome.success() {
+        if outcome.success() && !options.all {
             break;
         }
     }

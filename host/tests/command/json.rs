@@ -1,6 +1,6 @@
 //! Each field of the JSON: that it is there, what it is, and what it means.
 
-use super::shapes::{PEG_LENGTH, PEG_RADIUS, weighted_ring_centre_z};
+use super::shapes::{PEG_LENGTH, PEG_RADIUS, assert_hangs_by_the_ring, weighted_ring_centre_z};
 use super::*;
 
 fn keys(value: &Value) -> Vec<&str> {
@@ -10,7 +10,7 @@ fn keys(value: &Value) -> Vec<&str> {
 #[test]
 fn the_document_has_the_fields_that_programs_read() {
     let document = Scene::new().predict(&[]);
-    assert_eq!(document["schema"], 1);
+    assert_eq!(document["schema"], 2);
     assert!(document["rejection"].is_null());
     let mut found = keys(&document);
     found.sort_unstable();
@@ -22,15 +22,133 @@ fn the_document_has_the_fields_that_programs_read() {
     }
     for part in ["object", "supporter"] {
         assert!(stats["memory_bytes"][part].as_u64().unwrap() > 10_000);
+        assert!(stats["contacts"][part].as_u64().unwrap() > 0);
+        assert_eq!(stats["sites"][part], 0, "the paper's, which were not asked for");
+    }
+    assert!(stats["memory_bytes"]["prediction"].as_u64().unwrap() > 10_000);
+    assert_eq!(stats["contacts"]["object"], stats["counts"]["hangability"]["contacts"]);
+    assert_eq!(stats["contacts"]["supporter"], stats["counts"]["supportability"]["contacts"]);
+    let settling = |name: &str| stats["counts"]["settling"][name].as_u64().unwrap();
+    let fates = ["rotated_off", "slid_off", "moving", "at_rest"].map(settling);
+    assert_eq!(settling("released"), fates.iter().sum::<u64>(), "each ended somehow");
+    assert!(settling("candidates") >= settling("clear") && settling("at_rest") >= settling("firm"));
+    assert_eq!(settling("firm"), document["poses"].as_array().unwrap().len() as u64);
+
+    assert_eq!(document["params"]["samples"], 10_000);
+    assert_eq!(document["params"]["seed"], 0);
+}
+
+#[test]
+fn the_papers_document_has_sites() {
+    let document = Scene::new().predict(&PAPER);
+    let stats = &document["stats"];
+    for part in ["object", "supporter"] {
         assert!(stats["sites"][part].as_u64().unwrap() > 0);
+        assert_eq!(stats["contacts"][part], 0);
     }
     assert_eq!(stats["sites"]["object"], stats["counts"]["hangability"]["sites"]);
     assert_eq!(stats["sites"]["supporter"], stats["counts"]["supportability"]["sites"]);
     let pairs = number(&stats["sites"]["object"]) * number(&stats["sites"]["supporter"]);
     assert_eq!(number(&stats["counts"]["matching"]["pairs"]), pairs);
+}
 
-    assert_eq!(document["params"]["samples"], 10_000);
-    assert_eq!(document["params"]["seed"], 0);
+/// An object's row-major pose in the JSON, under this name.
+fn pose(entry: &Value, name: &str) -> [f64; 16] {
+    let pose = numbers::<16>(&entry[name]);
+    assert_is_rigid(&pose);
+    pose
+}
+
+#[test]
+fn poses_come_to_rest_and_say_how_firmly() {
+    let scene = Scene::new();
+    for (object, supporter) in [
+        (scene.ring.clone(), scene.peg.clone()),
+        (sample("mug.obj"), sample("hook.ply")),
+        (sample("scissors.obj"), sample("mug_tree.ply")),
+    ] {
+        let document = scene.predict_with(&object, &supporter, &[]);
+        let centre_of_mass = numbers::<3>(&run!("inspect", object, "--json").json()["centre_of_mass"]);
+        let poses = document["poses"].as_array().unwrap();
+        assert!(!poses.is_empty() && poses.len() <= 10);
+        let mut last = 1.0;
+        for (rank, entry) in (1..).zip(poses) {
+            assert_eq!(entry["rank"], rank);
+            assert_eq!(entry["release_pose"], entry["pose"]);
+            let [release, rest] = ["pose", "rest_pose"].map(|name| pose(entry, name));
+            assert_agrees(&release, numbers(&entry["position"]), numbers(&entry["quaternion_xyzw"]));
+            for absent in ["cost", "object_site", "supporter_site"] {
+                assert!(entry[absent].is_null(), "{absent} is the paper's");
+            }
+
+            let [from, to] = [release, rest].map(|pose| transform(&pose, centre_of_mass));
+            let sinking = number(&entry["sinking"]);
+            assert!((from[2] - to[2] - sinking).abs() < 1e-5, "rank {rank}: {from:?} {to:?} {sinking}");
+            assert!(distance(from, to) < 0.02, "released where it comes to rest: {from:?} {to:?}");
+            let clearance = number(&entry["clearance"]);
+            assert!(clearance > 0.0 && clearance <= 0.0010001, "{clearance}");
+
+            let probability = number(&entry["probability"]);
+            let least = number(&document["params"]["min_probability"]);
+            assert!((least..=last).contains(&probability), "rank {rank}: {probability}");
+            last = probability;
+
+            let margin = &entry["margin"];
+            let tilts = numbers::<8>(&margin["tilts"]);
+            assert!(tilts.iter().all(|tilt| (0.0..=1.20001).contains(tilt)), "{tilts:?}");
+            let [rise, knock] = ["escape_rise", "knock_speed"].map(|name| number(&margin[name]));
+            assert!(rise >= 0.0 && (knock - (2.0 * 9.81 * rise).sqrt()).abs() < 1e-4, "{rise} {knock}");
+            for name in ["escape_ratio", "centre_of_mass_radius"] {
+                assert!(number(&margin[name]) >= 0.0, "{name}");
+            }
+
+            // What bears pushes up, together as hard as the object weighs, but for what friction bears.
+            let contacts = entry["contacts"].as_array().unwrap();
+            assert!((1..=8).contains(&contacts.len()));
+            let mut borne = 0.0;
+            for contact in contacts {
+                let normal = numbers::<3>(&contact["normal"]);
+                assert!((distance(normal, [0.0; 3]) - 1.0).abs() < 1e-4, "{contact}");
+                borne += number(&contact["force"]) * normal[2];
+            }
+            assert!((0.4..1.15).contains(&borne), "rank {rank}: {borne} of the weight");
+            let [x, y, _] = to;
+            let is_beside = |c: &Value| {
+                let [u, v, _] = numbers::<3>(&c["position"]);
+                (x - u).hypot(y - v)
+            };
+            let nearest = contacts.iter().map(is_beside).fold(f64::INFINITY, f64::min);
+            assert!(nearest < 0.05, "hangs from where it is borne: {nearest}");
+        }
+    }
+}
+
+#[test]
+fn the_ring_hangs_on_the_peg_with_the_weight_below() {
+    let document = Scene::new().predict(&["--top", "1"]);
+    let [best] = &document["poses"].as_array().unwrap()[..] else { panic!("--top 1") };
+    let rest = pose(best, "rest_pose");
+    assert_hangs_by_the_ring(best);
+    let [origin, tip, weight] =
+        [[0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, weighted_ring_centre_z()]].map(|p| transform(&rest, p));
+    // The peg goes through the ring, whose axis is y in its own frame, and the weight hangs straight below.
+    assert!((tip[0] - origin[0]).abs() > 0.8, "{tip:?}");
+    assert!(weight[2] < -0.05 && weight[1].abs() < 0.01, "{weight:?}");
+}
+
+#[test]
+fn without_gravity_poses_are_where_contacts_meet() {
+    let scene = Scene::new();
+    let file = scene.write("geometry.toml", "settle = false\n");
+    let document = scene.predict(&["--params", file.to_str().unwrap(), "--top", "3"]);
+    assert_eq!(document["poses"].as_array().unwrap().len(), 3);
+    for entry in document["poses"].as_array().unwrap() {
+        pose(entry, "pose");
+        for absent in ["rest_pose", "sinking", "clearance", "probability", "margin", "contacts", "cost"] {
+            assert!(entry[absent].is_null(), "{absent}");
+        }
+    }
+    assert_eq!(document["stats"]["counts"]["settling"]["released"], 0);
 }
 
 #[test]
@@ -41,8 +159,8 @@ fn poses_are_rigid_ranked_and_bring_the_sites_together() {
         (sample("mug.obj"), sample("hook.ply")),
         (sample("scissors.obj"), sample("mug_tree.ply")),
     ] {
-        let document = scene.predict_with(&object, &supporter, &["--top", "40"]);
-        let inspected = run!("inspect", object, "--json").json();
+        let document = scene.predict_with(&object, &supporter, &[&PAPER[..], &["--top", "40"]].concat());
+        let inspected = run!("inspect", object, "--profile", "paper", "--json").json();
         let centre_of_mass = numbers::<3>(&inspected["centre_of_mass"]);
         let poses = document["poses"].as_array().unwrap();
         assert!(!poses.is_empty() && poses.len() <= 40);
@@ -52,6 +170,10 @@ fn poses_are_rigid_ranked_and_bring_the_sites_together() {
             let pose = numbers::<16>(&entry["pose"]);
             assert_is_rigid(&pose);
             assert_agrees(&pose, numbers(&entry["position"]), numbers(&entry["quaternion_xyzw"]));
+
+            for absent in ["rest_pose", "sinking", "clearance", "probability", "margin", "contacts"] {
+                assert!(entry[absent].is_null(), "{absent}: gravity was not asked");
+            }
 
             let cost = &entry["cost"];
             let sum: f64 = ["collision", "boundary", "contact_area"].iter().map(|c| number(&cost[c])).sum();
@@ -75,8 +197,8 @@ fn poses_are_rigid_ranked_and_bring_the_sites_together() {
 }
 
 #[test]
-fn the_ring_hangs_on_the_middle_of_the_peg() {
-    let document = Scene::new().predict(&["--top", "1"]);
+fn the_papers_best_is_the_middle_of_the_peg() {
+    let document = Scene::new().predict(&[&PAPER[..], &["--top", "1"]].concat());
     let [best] = &document["poses"].as_array().unwrap()[..] else { panic!("--top 1") };
     let pose = numbers::<16>(&best["pose"]);
 
@@ -143,22 +265,33 @@ fn the_same_bytes_twice_and_on_any_number_of_threads() {
 #[test]
 fn a_seed_changes_the_samples_and_nothing_else() {
     let scene = Scene::new();
-    let sites = |seed: &str| {
+    let rest = |seed: &str| {
         let document = scene.predict(&["--seed", seed]);
         assert_eq!(document["params"]["seed"].to_string(), seed);
-        document["poses"][0]["object_site"].to_string()
+        document["poses"][0]["rest_pose"].to_string()
     };
-    assert_eq!(sites("7"), sites("7"));
-    assert_ne!(sites("7"), sites("18446744073709551615"));
+    assert_eq!(rest("7"), rest("7"));
+    assert_ne!(rest("7"), rest("18446744073709551615"));
     let mesh = scene.write("peg.obj", shapes::obj(&shapes::peg_mesh()));
-    let points = |seed: &str| run!("inspect", mesh, "--as", "supporter", "--seed", seed, "--json").json();
+    let points = |seed: &str| {
+        run!("inspect", mesh, "--as", "supporter", "--profile", "paper", "--seed", seed, "--json").json()
+    };
     assert_ne!(points("1")["sites"], points("2")["sites"], "a supporter's mesh is sampled, too");
 }
 
 #[test]
 fn a_given_centre_of_mass_hangs_below() {
     let given = [0.012, 0.0, -0.06];
-    let document = Scene::new().predict(&["--com", "0.012,0,-0.06", "--top", "1"]);
+    let options = ["--com", "0.012,0,-0.06", "--top", "1"];
+    let best = &Scene::new().predict(&options)["poses"][0];
+    let rest = pose(best, "rest_pose");
+    let contact = numbers::<3>(&best["contacts"][0]["position"]);
+    // About the peg: along it friction may hold it a little askew.
+    let [beside, true_beside] =
+        [given, [0.0, 0.0, weighted_ring_centre_z()]].map(|p| transform(&rest, p)).map(|p| p[1] - contact[1]);
+    assert!(beside.abs() < 0.006 && true_beside.abs() > 0.006, "{beside} {true_beside}");
+
+    let document = Scene::new().predict(&[&PAPER[..], &options].concat());
     let in_params = numbers::<3>(&document["params"]["centre_of_mass"]["given"]);
     assert!(distance(in_params, given) < 1e-6);
     let best = &document["poses"][0];

@@ -35,6 +35,9 @@ macro_rules! run {
 }
 use run;
 
+/// The published method, which has sites and costs.
+const PAPER: [&str; 2] = ["--profile", "paper"];
+
 fn command() -> Command {
     Command::new(env!("CARGO_BIN_EXE_hangpose"))
 }

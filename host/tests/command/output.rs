@@ -17,7 +17,7 @@ fn a_dash_gives_nothing_but_json() {
     let run = run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--json", "-");
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
     assert!(run.stdout.starts_with('{') && run.stdout.ends_with("}\n"));
-    assert_eq!(run.json()["schema"], 1);
+    assert_eq!(run.json()["schema"], 2);
 }
 
 #[test]
@@ -26,7 +26,7 @@ fn a_file_holds_what_a_dash_prints_and_the_table_is_shown() {
     let out = scene.path("out.json");
     let run = run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--json", out);
     assert_eq!(run.status, Some(0), "{}", run.stderr);
-    assert!(run.stdout.contains("rank"));
+    assert!(run.stdout.contains("hangs with a probability of"));
     let written = serde_json::from_slice(&std::fs::read(&out).unwrap()).unwrap();
     assert_eq!(timeless(written), timeless(scene.predict(&[])));
     assert_only(scene.folder.path(), &["ball.obj", "out.json", "peg.xyz", "ring.obj"]);
@@ -145,5 +145,5 @@ fn pipes_and_links_stay_what_they_are() {
     let run = run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--json", link);
     assert_eq!(run.status, Some(0), "{}", run.stderr);
     assert!(std::fs::symlink_metadata(&link).unwrap().is_symlink());
-    assert!(std::fs::read_to_string(&target).unwrap().contains("\"schema\": 1"));
+    assert!(std::fs::read_to_string(&target).unwrap().contains("\"schema\": 2"));
 }

@@ -51,8 +51,9 @@ fn millimetres_give_the_same_poses() {
     let points = shapes::peg().into_iter().map(|[x, y, z, a, b, c]| [1e3 * x, 1e3 * y, 1e3 * z, a, b, c]);
     let supporter = scene.write("mm.xyz", shapes::xyz(&points.collect::<Vec<_>>()));
 
-    let metres = scene.predict(&["--top", "1"])["poses"][0].clone();
-    let options = ["--top", "1", "--object-scale", "0.001", "--supporter-scale", "0.001"];
+    let metres = scene.predict(&[&PAPER[..], &["--top", "1"]].concat())["poses"][0].clone();
+    let options =
+        ["--profile", "paper", "--top", "1", "--object-scale", "0.001", "--supporter-scale", "0.001"];
     let millimetres = scene.predict_with(&object, &supporter, &options)["poses"][0].clone();
     // The last bit of a coordinate may differ, and with it the choice among equals; not where the object hangs.
     for site in ["object_site", "supporter_site"] {
@@ -60,6 +61,9 @@ fn millimetres_give_the_same_poses() {
         assert!(distance(a, b) < 0.002, "{site}: {a:?}, {b:?}");
     }
     assert!((number(&metres["cost"]["total"]) - number(&millimetres["cost"]["total"])).abs() < 0.02);
+
+    let in_millimetres = scene.predict_with(&object, &supporter, &options[2..]);
+    shapes::assert_hangs_by_the_ring(&in_millimetres["poses"][0]);
 
     // A scale by a power of two changes no digit.
     let (mut vertices, triangles) = shapes::weighted_ring();

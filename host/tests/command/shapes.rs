@@ -45,6 +45,22 @@ pub(crate) fn assert_is_in_the_ring(site: &Value) {
     assert!(axis.abs() > 0.7, "through the hole: {site}");
 }
 
+/// Asserts that all that bears the weighted ring at rest is the peg, in the ring.
+#[track_caller]
+pub(crate) fn assert_hangs_by_the_ring(entry: &Value) {
+    let rest = numbers::<16>(&entry["rest_pose"]);
+    for contact in entry["contacts"].as_array().unwrap() {
+        let p @ [x, y, z] = numbers::<3>(&contact["position"]);
+        assert!(x.abs() < PEG_LENGTH / 2.0 + 0.001, "{contact}");
+        assert!((y.hypot(z) - PEG_RADIUS).abs() < 0.001 && z > 0.0, "on top of the peg: {contact}");
+        // Back into the object's frame.
+        let [u, v, w] =
+            core::array::from_fn(|i| (0..3).map(|j| rest[4 * j + i] * (p[j] - rest[4 * j + 3])).sum::<f64>());
+        let from_wire = (f64::hypot(u, w) - RING_RADIUS).hypot(v);
+        assert!((from_wire - WIRE_RADIUS).abs() < 0.001, "on the ring: {contact} {from_wire}");
+    }
+}
+
 /// The centre of mass of the weighted ring lies on the z axis, here: Pappus' volume of the ring against the box's.
 pub(crate) fn weighted_ring_centre_z() -> f64 {
     let ring = PI * WIRE_RADIUS.powi(2) * TAU * RING_RADIUS;

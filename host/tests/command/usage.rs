@@ -51,23 +51,53 @@ fn help_tells_of_every_option_and_status() {
 #[test]
 fn the_table_says_what_was_read_and_agrees_with_the_json() {
     let scene = Scene::new();
-    let run = run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--top", "4");
+    let run = run!("predict", "--object", scene.ring, "--supporter", scene.peg);
+    assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
+    let document = scene.predict(&[]);
+    let lines: Vec<&str> = run.stdout.lines().collect();
+    assert_eq!(lines[0], heading(&document, "contacts"));
+    let poses = document["poses"].as_array().unwrap();
+    assert_eq!(lines.len(), 1 + poses.len());
+    for (line, pose) in lines[1..].iter().zip(poses) {
+        let margin = &pose["margin"];
+        let tilt = numbers::<8>(&margin["tilts"]).into_iter().fold(f64::INFINITY, f64::min);
+        let or_more = if tilt >= 1.2 { " or more" } else { "" };
+        let words = format!(
+            "{:4}  hangs with a probability of {:.0} %: stays up to a {:.0} degree tilt{or_more} or a {:.1} m/s knock; let go, it sinks {:.1} mm, on (",
+            number(&pose["rank"]),
+            100.0 * number(&pose["probability"]),
+            tilt.to_degrees(),
+            number(&margin["knock_speed"]),
+            1000.0 * number(&pose["sinking"]),
+        );
+        assert!(line.starts_with(&words) && line.ends_with(") mm"), "{line}\n{words}");
+    }
+}
+
+/// What was read, with so many sites or contacts.
+fn heading(document: &Value, places: &str) -> String {
+    let places = &document["stats"][places];
+    format!(
+        "object: {} triangles, closed, 68 x 8 x 154 mm, {} places to hang by; supporter: {} points, 100 x 8 x 8 mm, {} places to hang on",
+        shapes::weighted_ring().1.len(),
+        places["object"],
+        shapes::peg().len(),
+        places["supporter"],
+    )
+}
+
+#[test]
+fn the_papers_table_agrees_with_the_json() {
+    let scene = Scene::new();
+    let options = [&PAPER[..], &["--top", "4"]].concat();
+    let mut command = command();
+    command.args(["predict", "--object"]).arg(&scene.ring).arg("--supporter").arg(&scene.peg).args(&options);
+    let run = finish(&mut command);
     // No progress bar either: standard error is no terminal here.
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
-    let document = scene.predict(&["--top", "4"]);
+    let document = scene.predict(&options);
     let lines: Vec<&str> = run.stdout.lines().collect();
-    let sites = &document["stats"]["sites"];
-    let (_, triangles) = shapes::weighted_ring();
-    assert_eq!(
-        lines[0],
-        format!(
-            "object: {} triangles, closed, 68 x 8 x 154 mm, {} sites; supporter: {} points, 100 x 8 x 8 mm, {} sites",
-            triangles.len(),
-            sites["object"],
-            shapes::peg().len(),
-            sites["supporter"],
-        )
-    );
+    assert_eq!(lines[0], heading(&document, "sites"));
     assert!(lines[1].trim_start().starts_with("rank    total"));
     let poses = document["poses"].as_array().unwrap();
     assert_eq!(lines.len(), 2 + poses.len());

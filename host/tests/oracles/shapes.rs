@@ -69,11 +69,13 @@ impl Shape {
 
     /// Builds the core's surface, by the way that users go.
     pub(crate) fn with_surface<R>(&self, check: impl FnOnce(&Surface) -> R) -> R {
-        let params = Params { samples: 100, ..Params::default() };
+        // No field, no sites to speak of: only the mesh is asked.
+        let params = Params { samples: 100, ..Params::paper() };
         let limits = Limits {
             vertices: self.vertices.len(),
             triangles: self.triangles.len(),
             samples: params.samples,
+            voxels: params.voxels,
             points: 0,
         };
         let mut memory = vec![0; Object::bytes(&limits)];
