@@ -49,7 +49,7 @@
 #define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 17
 #define HANGPOSE_SUPPORTER_BYTES_AT_LEAST 17408
 #define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 181
-#define HANGPOSE_PREDICT_BYTES_AT_LEAST 183296
+#define HANGPOSE_PREDICT_BYTES_AT_LEAST 104448
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 8
 #define HANGPOSE_PREDICT_BYTES_EACH_POSE 376
 
@@ -167,7 +167,7 @@ typedef struct hangpose_params {
   uint32_t voxels;
   // Poses that are let go at most; 0 to 10000.
   uint32_t settle_attempts;
-  // No more poses are let go when so many stay; 0 to 10000.
+  // No more poses are let go when so many stay firmly, with a probability of 95 % or more; 0 to 10000.
   uint32_t firm_enough;
   // Poses that are less likely to hang than this are none; 0 to 1.
   float min_probability;
@@ -494,7 +494,11 @@ typedef struct hangpose_prediction {
   uint32_t settling_moving;
   // Those that came to rest.
   uint32_t settling_at_rest;
-  // Different rests that are probable enough.
+  // Of these, those that would not come off again.
+  uint32_t settling_wedged;
+  // Different rests that are probable enough to be given.
+  uint32_t settling_probable;
+  // Those among them that need no better ones beside them.
   uint32_t settling_firm;
   // Rays cast.
   uint64_t rays;

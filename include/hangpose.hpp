@@ -270,8 +270,8 @@ class supporter {
 };
 
 // Where the supporter bears the object at rest.
-inline view<const hangpose_contact> contacts(const pose &pose) noexcept {
-  return {pose.contacts, pose.contact_count};
+inline view<const hangpose_contact> contacts(const pose &hanging) noexcept {
+  return {hanging.contacts, hanging.contact_count};
 }
 
 // What predict found: poses, best first, or why there are none.
@@ -346,12 +346,12 @@ inline Eigen::Isometry3f motion(const float (&position)[3], const float (&quater
 }  // namespace internal
 
 // The motion from object to supporter coordinates, where the object is let go.
-inline Eigen::Isometry3f to_eigen(const pose &pose) {
-  return internal::motion(pose.position, pose.quaternion);
+inline Eigen::Isometry3f to_eigen(const pose &hanging) {
+  return internal::motion(hanging.position, hanging.quaternion);
 }
 // The same where it comes to rest; NaN where it has no rest.
-inline Eigen::Isometry3f rest_to_eigen(const pose &pose) {
-  return internal::motion(pose.rest_position, pose.rest_quaternion);
+inline Eigen::Isometry3f rest_to_eigen(const pose &hanging) {
+  return internal::motion(hanging.rest_position, hanging.rest_quaternion);
 }
 
 // Points, normals or triangles in the columns of a matrix, which must outlive the view.

@@ -84,9 +84,20 @@ fn words(thing: &Thing, support: &Support, profile: u32) -> Result<Vec<u32>, Box
     ]);
     let MatchingCounts { pairs, fitting, clear } = found.counts.matching;
     words.extend([pairs, fitting, clear].map(|count| count as u32));
-    let SettlingCounts { candidates, clear, released, rotated_off, slid_off, moving, at_rest, firm } =
-        found.counts.settling;
-    let settling = [candidates, clear, released, rotated_off, slid_off, moving, at_rest, firm];
+    let SettlingCounts {
+        candidates,
+        clear,
+        released,
+        rotated_off,
+        slid_off,
+        moving,
+        at_rest,
+        wedged,
+        probable,
+        firm,
+    } = found.counts.settling;
+    let settling =
+        [candidates, clear, released, rotated_off, slid_off, moving, at_rest, wedged, probable, firm];
     words.extend(settling.map(|count| count as u32));
     found.poses.iter().for_each(|pose| words.extend(pose_words(pose)));
     Ok(words)

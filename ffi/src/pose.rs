@@ -1,7 +1,6 @@
+use crate::detail::HANGPOSE_NO_INDEX;
 use hangpose_core::hanging::{Cost, HangingPose, SiteMatch};
 use hangpose_core::mechanics::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
-
-use crate::detail::HANGPOSE_NO_INDEX;
 
 /// Directions in which gravity is tilted.
 pub const HANGPOSE_DIRECTIONS: usize = 8;

@@ -11,7 +11,9 @@ use crate::status::*;
 use crate::supporter::{SupporterHandle, hangpose_supporter};
 use core::ffi::c_void;
 use hangpose_core::Monitor;
-use hangpose_core::hanging::{Counts, HangingPose, Prediction, predict, predict_bytes};
+use hangpose_core::hanging::{
+    HangingPose, MatchingCounts, Prediction, SettlingCounts, predict, predict_bytes,
+};
 use hangpose_core::memory::Limits;
 
 /// What hangpose_predict found beside the poses: what was left after each step of the method, and what it took.
@@ -48,7 +50,11 @@ pub struct hangpose_prediction {
     pub settling_moving: u32,
     /// Those that came to rest.
     pub settling_at_rest: u32,
-    /// Different rests that are probable enough.
+    /// Of these, those that would not come off again.
+    pub settling_wedged: u32,
+    /// Different rests that are probable enough to be given.
+    pub settling_probable: u32,
+    /// Those among them that need no better ones beside them.
     pub settling_firm: u32,
     /// Rays cast.
     pub rays: u64,
@@ -168,23 +174,37 @@ fn pose_slots(
 
 impl From<&Prediction<'_>> for hangpose_prediction {
     fn from(found: &Prediction) -> Self {
-        let Counts { matching, settling, .. } = found.counts;
+        let MatchingCounts { pairs, fitting, clear: matching_clear } = found.counts.matching;
+        let SettlingCounts {
+            candidates,
+            clear,
+            released,
+            rotated_off,
+            slid_off,
+            moving,
+            at_rest,
+            wedged,
+            probable,
+            firm,
+        } = found.counts.settling;
         Self {
             struct_size: size_of::<Self>() as u32,
             pose_count: found.poses.len() as u32,
             stage: found.rejection.map_or(HANGPOSE_STAGE_NONE, |rejection| stage(rejection.stage)),
             stopped: stopped(found.stopped),
-            matching_pairs: matching.pairs as u32,
-            matching_fitting: matching.fitting as u32,
-            matching_clear: matching.clear as u32,
-            settling_candidates: settling.candidates as u32,
-            settling_clear: settling.clear as u32,
-            settling_released: settling.released as u32,
-            settling_rotated_off: settling.rotated_off as u32,
-            settling_slid_off: settling.slid_off as u32,
-            settling_moving: settling.moving as u32,
-            settling_at_rest: settling.at_rest as u32,
-            settling_firm: settling.firm as u32,
+            matching_pairs: pairs as u32,
+            matching_fitting: fitting as u32,
+            matching_clear: matching_clear as u32,
+            settling_candidates: candidates as u32,
+            settling_clear: clear as u32,
+            settling_released: released as u32,
+            settling_rotated_off: rotated_off as u32,
+            settling_slid_off: slid_off as u32,
+            settling_moving: moving as u32,
+            settling_at_rest: at_rest as u32,
+            settling_wedged: wedged as u32,
+            settling_probable: probable as u32,
+            settling_firm: firm as u32,
             rays: found.work.rays,
             distance_queries: found.work.distance_queries,
         }

@@ -50,7 +50,8 @@ static int compare(const uint32_t *words) {
                              found.matching_pairs,       found.matching_fitting,  found.matching_clear,
                              found.settling_candidates,  found.settling_clear,    found.settling_released,
                              found.settling_rotated_off, found.settling_slid_off, found.settling_moving,
-                             found.settling_at_rest,     found.settling_firm};
+                             found.settling_at_rest,     found.settling_wedged,   found.settling_probable,
+                             found.settling_firm};
   int is_equal = memcmp(answer, next, sizeof answer) == 0;
   next += sizeof answer / 4;
   const size_t pose_words = sizeof(hangpose_pose) / 4 - 1;
