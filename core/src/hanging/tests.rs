@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::geometry::{Cloud, Pose};
-use crate::memory::Limits;
+use crate::memory::{Limits, OutOfMemory};
 use crate::test_shapes::{self, Shape};
-use crate::{CentreOfMass, Monitor, Params, Stop};
+use crate::{Candidates, CentreOfMass, Monitor, Params, Stop};
 use nalgebra::{Translation3, UnitQuaternion};
 
 /// The published method about the true centre of mass, with few samples: what tests sites and their matching.
@@ -397,4 +397,196 @@ fn broken_normals_are_mended_and_counted() {
     let probes = [Point::new(0.03, 0.0, 0.0), Point::new(0.0, 0.03, 0.0)];
     let (mended, _) = scene.predict(&fast());
     assert!(mended.iter().any(|m| gap(&m.pose, &expected[0].pose, probes) < 0.01));
+}
+
+/// The product with few samples and a coarse field.
+fn product() -> Params {
+    Params { samples: 2000, voxels: 100_000, ..Params::default() }
+}
+
+impl Scene {
+    /// The ring on a peg whose end at +x is the higher one.
+    fn ring_on_tilted_peg(degrees: f32) -> Self {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let along = Vector::new(cos, 0.0, sin) * 0.05;
+        let (points, normals) = test_shapes::peg(Point::from(-along), Point::from(along), 0.005, 0.001);
+        Self { points, normals, ..Self::ring_on_peg(0.0) }
+    }
+
+    /// All of it turned about the vertical through the origin.
+    fn turned(&self, degrees: f32) -> Self {
+        let turn = UnitQuaternion::from_axis_angle(&Vector::z_axis(), degrees.to_radians());
+        let rotate = |v: &[f32; 3]| -> [f32; 3] { (turn * Vector::from(*v)).into() };
+        Self {
+            points: self.points.iter().map(rotate).collect(),
+            normals: self.normals.iter().map(rotate).collect(),
+            object: self.object.clone(),
+        }
+    }
+}
+
+/// Asserts what holds of every pose that was let go: clear where it is released, and at rest below what bears it.
+#[track_caller]
+fn assert_hangs(poses: &[HangingPose], scene: &Scene, params: &Params) {
+    assert!(!poses.is_empty());
+    scene.analyse(params, &Monitor::new(), |object, supporter| {
+        let mut last = 1.0;
+        for pose in poses {
+            let rest = pose.rest.unwrap();
+            assert!((params.min_probability..=last).contains(&rest.probability), "{}", rest.probability);
+            last = rest.probability;
+            let inverse = pose.pose.inverse();
+            let distance = |p: &Point| object.surface().signed_distance(&(inverse * p));
+            let least = supporter.points().points().iter().map(distance).fold(f32::INFINITY, f32::min);
+            assert!(least > 0.0 && least < 0.003, "released off the supporter, but not far: {least}");
+            assert!(rest.clearance > 0.0 && rest.clearance <= params.clearance);
+            let [from, to] = [pose.pose, rest.pose].map(|pose| pose * object.centre_of_mass());
+            assert!((from.z - to.z - rest.sinking).abs() < 1e-5, "{rest:?}");
+            let contacts = rest.contacts();
+            let highest = contacts.iter().map(|c| c.position.z).fold(f32::NEG_INFINITY, f32::max);
+            assert!(!contacts.is_empty() && to.z < highest, "{to} {contacts:?}");
+        }
+    });
+}
+
+#[test]
+fn what_is_let_go_stays_below_what_bears_it() {
+    for degrees in [0.0, 10.0] {
+        let scene = Scene::ring_on_tilted_peg(degrees);
+        let (poses, stage) = scene.predict(&product());
+        assert_eq!(stage, None, "{degrees}");
+        assert_hangs(&poses, &scene, &product());
+    }
+    let scene = Scene::key_on_peg();
+    assert_hangs(&scene.predict(&product()).0, &scene, &product());
+}
+
+#[test]
+fn a_peg_beyond_the_friction_angle_lets_the_ring_slide() {
+    let hangs = |degrees: f32, friction: f32| {
+        !Scene::ring_on_tilted_peg(degrees).predict(&Params { friction, ..product() }).0.is_empty()
+    };
+    assert!(hangs(10.0, 0.4) && !hangs(40.0, 0.4));
+    assert!(hangs(30.0, 0.9) && !hangs(10.0, 0.02));
+}
+
+#[test]
+fn the_product_rejects_for_the_right_reason() {
+    let ring = || Scene::ring_on_peg(0.0);
+    let cube = test_shapes::prism(0.06, &[[-0.03, -0.03], [0.03, -0.03], [0.03, 0.03], [-0.03, 0.03]]);
+    for object in [test_shapes::ball(0.04, 32, 64), cube] {
+        let convex = Scene { object, ..ring() };
+        assert_eq!(convex.predict(&product()), (vec![], Some(Stage::NoContactPoints)));
+    }
+    let wall = test_shapes::grid(0.2, 60).map(|p| Point::new(0.0, p.x, p.y));
+    let wall = Scene { normals: vec![[1.0, 0.0, 0.0]; wall.vertices.len()], points: wall.vertices, ..ring() };
+    assert_eq!(wall.predict(&product()), (vec![], Some(Stage::NoSupport)));
+    // Everywhere something is in the way.
+    let dusty = Scene { object: ring().object, ..Scene::dusty_key_on_peg() };
+    assert_eq!(dusty.predict(&product()), (vec![], Some(Stage::AllCollide)));
+    let steep = Scene::ring_on_tilted_peg(40.0).predict(&product());
+    assert_eq!(steep, (vec![], Some(Stage::SlidesOff)));
+}
+
+#[test]
+fn the_product_gives_the_same_bytes_twice() {
+    let scene = Scene::key_on_peg();
+    let bits = |params: &Params| std::format!("{:?}", scene.predict(params).0);
+    let first = bits(&product());
+    assert_eq!(first, bits(&product()));
+    assert_ne!(first, bits(&Params { seed: 1, ..product() }));
+}
+
+#[test]
+fn exactly_enough_memory_lets_go() {
+    let scene = Scene::ring_on_peg(0.0);
+    scene.analyse(&product(), &Monitor::new(), |object, supporter| {
+        let needed = predict_bytes(&scene.limits(&product()));
+        let mut memory = vec![0xFF; needed + 17];
+        let mut run = |from: usize, size: usize, fill: u8| {
+            memory.fill(fill);
+            let mut poses = [HangingPose::default(); 4];
+            let memory = &mut memory[from..from + size];
+            let found = super::predict(object, supporter, &product(), &mut poses, memory, &Monitor::new());
+            found.map(|prediction| prediction.poses.to_vec())
+        };
+        let first = run(0, needed, 0).unwrap();
+        assert!(!first.is_empty());
+        // Wherever it begins, and what was in it does not matter.
+        for from in [1, 7, 16] {
+            assert_eq!(run(from, needed, !0), Ok(first.clone()));
+        }
+        let too_small = OutOfMemory { needed, given: needed - 1 };
+        assert_eq!(run(0, needed - 1, 0), Err(PredictError::OutOfMemory(too_small)));
+        assert!(run(0, 0, 0).is_err());
+    });
+}
+
+#[test]
+fn a_work_limit_gives_what_has_come_to_rest_so_far() {
+    let scene = Scene::key_on_peg();
+    let params = Params { firm_enough: 1000, settle_attempts: 12, ..product() };
+    scene.analyse(&params, &Monitor::new(), |object, supporter| {
+        let mut slots = [HangingPose::default(); 50];
+        let full = predict(object, supporter, &params, &mut slots, &Monitor::new()).unwrap();
+        assert_eq!(full.stopped, None);
+        assert!(full.poses.len() > 1, "{:?}", full.counts);
+        let mut partial = 0;
+        for tenths in [1, 5, 8, 9] {
+            let monitor = Monitor::with_work_limit(full.work.distance_queries * tenths / 10);
+            let mut slots = [HangingPose::default(); 50];
+            let part = predict(object, supporter, &params, &mut slots, &monitor).unwrap();
+            assert_eq!((part.stopped, part.rejection), (Some(Stop::WorkLimit), None));
+            assert!(part.poses.iter().all(|pose| full.poses.contains(pose)));
+            partial += usize::from(!part.poses.is_empty() && part.poses.len() < full.poses.len());
+        }
+        assert!(partial > 0, "some limit leaves some of them");
+        let monitor = Monitor::new();
+        monitor.cancel();
+        let cancelled = predict(object, supporter, &params, &mut slots, &monitor).unwrap();
+        assert_eq!((cancelled.stopped, cancelled.poses.len()), (Some(Stop::Cancelled), 0));
+    });
+}
+
+#[test]
+fn each_part_can_be_switched_off() {
+    let scene = Scene::ring_on_peg(0.0);
+    let (poses, stage) = scene.predict(&Params { settle: false, ..product() });
+    assert!(stage.is_none() && poses.len() > 10);
+    assert!(poses.iter().all(|pose| pose.rest.is_none() && pose.matched.is_none()));
+
+    // The paper's candidates, let go.
+    let params = Params { candidates: Candidates::Sites, settle: true, voxels: 100_000, ..fast() };
+    let matched = scene.predict(&fast()).0;
+    let (poses, stage) = scene.predict(&params);
+    assert_eq!(stage, None);
+    assert!(poses.len() <= matched.len());
+    assert!(poses.iter().all(|pose| matched.iter().any(|m| m.matched == pose.matched)));
+    assert_hangs(&poses, &scene, &params);
+}
+
+#[test]
+fn without_a_field_nothing_can_be_let_go() {
+    let scene = Scene::ring_on_peg(0.0);
+    for params in [Params { voxels: 0, ..product() }, Params { settle: true, ..fast() }] {
+        let error = params.validate().unwrap_err();
+        assert!(std::format!("{error}").starts_with("voxels = 0 "), "{error}");
+        let mut memory = vec![0; Object::bytes(&scene.limits(&params))];
+        let object = Object::analyze(&scene.object.mesh(), &params, &mut memory, &Monitor::new());
+        assert_eq!(object.err(), Some(AnalysisError::Params(error)));
+    }
+    // An object that was analysed for another profile.
+    scene.analyse(&fast(), &Monitor::new(), |object, supporter| {
+        let mut poses = [HangingPose::default(); 1];
+        let prediction = predict(object, supporter, &product(), &mut poses, &Monitor::new());
+        assert_eq!(prediction, Err(PredictError::NoDistanceField));
+    });
+}
+
+#[test]
+fn the_product_hangs_in_every_direction() {
+    for degrees in [30.0, 90.0, 200.0] {
+        let scene = Scene::key_on_peg().turned(degrees);
+        assert_hangs(&scene.predict(&product()).0, &scene, &product());
+    }
 }

@@ -26,6 +26,14 @@ pub(crate) fn release_pose(
     let mut best = (*rest, f32::NEG_INFINITY);
     for step in 0..STEPS {
         neighbourhood.update(&mut contacts, scene, &state, (clearance, 0.0), meter)?;
+        // Beyond its band the field may say no more than that something is there.
+        let to_object = body.pose(&state).inverse();
+        let far = 0.9 * body.field.band();
+        for contact in contacts.iter_mut().filter(|contact| contact.gap > far) {
+            meter.distance_queries(1)?;
+            let at = to_object * contact.position;
+            contact.gap = contact.gap.max((body.surface.closest_point(&at) - at).norm());
+        }
         let gap = contacts.iter().map(|contact| contact.gap).fold(clearance, f32::min);
         if gap > best.1 {
             best = (body.pose(&state), gap);

@@ -4,6 +4,7 @@
 //! Errors are stated in roundings: `f32::EPSILON` times the largest coordinate or distance that takes part. That is
 //! what `f32` can tell apart there, so a bound of a few holds at every scale and offset.
 
+mod field;
 mod files;
 mod points;
 mod random;
