@@ -2,7 +2,7 @@
 
 use hangpose::hanging::HangingPose;
 use hangpose::{
-    Monitor, Params, analyze_object, analyze_supporter, geometry::Mesh, hanging, sample_supporter,
+    Monitor, Params, analyze_object, analyze_supporter, geometry::Mesh, sample_supporter,
 };
 use host_tests::judge::{Bullet, Judge, Scene};
 use host_tests::tables::case::{Case, made};
@@ -81,7 +81,7 @@ fn a_run_that_was_killed_resumes_with_the_same_rows() {
     let record = folder.join("rows.jsonl");
     let profiles = [("paper".to_string(), Params::paper())];
     let options =
-        Options { profiles: &profiles, engine: Engine::Ode, threads: 2, record: &record, gallery: None };
+        Options { profiles: &profiles, engine: Engine::Ode, threads: 2, record: &record, all: false, gallery: None };
     let made_now = AtomicUsize::new(0);
     let count = |_, _| {
         made_now.fetch_add(1, Ordering::Relaxed);

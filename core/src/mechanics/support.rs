@@ -52,11 +52,9 @@ pub(crate) fn choose_representatives(
     }
     let spacing = spacing(tree);
     let disc = DISC * spacing.max(REPRESENTATIVES_APART);
-    for index in 0..is_representative.len() {
-        if is_representative[index] > 0 {
-            let share = covered(tree, normals, index, disc + spacing) / disc;
-            is_representative[index] = (share * 255.0).clamp(1.0, 255.0) as u8;
-        }
+    for (index, share) in is_representative.iter_mut().enumerate().filter(|(_, share)| **share > 0) {
+        let covered = covered(tree, normals, index, disc + spacing) / disc;
+        *share = (covered * 255.0).clamp(1.0, 255.0) as u8;
     }
     disc
 }
