@@ -66,8 +66,8 @@ pub(crate) fn solve(
             let most = friction * row.impulse[0];
             let length = libm::sqrtf(wanted[0] * wanted[0] + wanted[1] * wanted[1]);
             let scale = if length > most { most / length } else { 1.0 };
-            for k in 0..2 {
-                let change = wanted[k] * scale - row.impulse[k + 1];
+            for (k, wanted) in wanted.into_iter().enumerate() {
+                let change = wanted * scale - row.impulse[k + 1];
                 row.impulse[k + 1] += change;
                 state.velocity += row.tangents[k] * change;
                 state.spin += row.twist[k + 1] * change;
