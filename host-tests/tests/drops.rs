@@ -1,9 +1,7 @@
 //! A fixed set of pairs, predicted and dropped: a predictor that is broken falls below the floor.
 
 use hangpose::hanging::HangingPose;
-use hangpose::{
-    Monitor, Params, analyze_object, analyze_supporter, geometry::Mesh, sample_supporter,
-};
+use hangpose::{Monitor, Params, analyze_object, analyze_supporter, geometry::Mesh, sample_supporter};
 use host_tests::judge::{Bullet, Judge, Scene};
 use host_tests::tables::case::{Case, made};
 use host_tests::tables::run::{Engine, Options, run};
@@ -80,8 +78,14 @@ fn a_run_that_was_killed_resumes_with_the_same_rows() {
     std::fs::create_dir_all(&folder).unwrap();
     let record = folder.join("rows.jsonl");
     let profiles = [("paper".to_string(), Params::paper())];
-    let options =
-        Options { profiles: &profiles, engine: Engine::Ode, threads: 2, record: &record, all: false, gallery: None };
+    let options = Options {
+        profiles: &profiles,
+        engine: Engine::Ode,
+        threads: 2,
+        record: &record,
+        all: false,
+        gallery: None,
+    };
     let made_now = AtomicUsize::new(0);
     let count = |_, _| {
         made_now.fetch_add(1, Ordering::Relaxed);

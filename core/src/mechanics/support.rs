@@ -52,9 +52,9 @@ pub(crate) fn choose_representatives(
     }
     let spacing = spacing(tree);
     let disc = DISC * spacing.max(REPRESENTATIVES_APART);
-    for (index, share) in is_representative.iter_mut().enumerate().filter(|(_, share)| **share > 0) {
-        let covered = covered(tree, normals, index, disc + spacing) / disc;
-        *share = (covered * 255.0).clamp(1.0, 255.0) as u8;
+    for (index, representative) in is_representative.iter_mut().enumerate().filter(|(_, r)| **r > 0) {
+        let share = covered(tree, normals, index, disc + spacing) / disc;
+        *representative = (share * 255.0).clamp(1.0, 255.0) as u8;
     }
     disc
 }
@@ -69,6 +69,8 @@ fn covered(tree: &PointTree, normals: &[Vector], index: usize, radius: f32) -> f
     let (place, normal) = (tree.points()[index], normals[index]);
     let ahead = any_perpendicular(normal);
     let aside = normal.cross(&ahead);
+    let directions: [(f32, f32); SIDES] =
+        core::array::from_fn(|k| libm::sincosf(core::f32::consts::TAU * k as f32 / SIDES as f32));
     let mut extents = [0.0_f32; SIDES];
     tree.for_each_within(&place, radius, |neighbour| {
         let other = neighbour.index as usize;
@@ -78,8 +80,7 @@ fn covered(tree: &PointTree, normals: &[Vector], index: usize, radius: f32) -> f
         let offset = tree.points()[other] - place;
         let (x, y) = (offset.dot(&ahead), offset.dot(&aside));
         let distance = libm::sqrtf(x * x + y * y);
-        for (k, extent) in extents.iter_mut().enumerate() {
-            let (sin, cos) = libm::sincosf(core::f32::consts::TAU * k as f32 / SIDES as f32);
+        for (extent, (sin, cos)) in extents.iter_mut().zip(&directions) {
             if x * cos + y * sin > core::f32::consts::FRAC_1_SQRT_2 * distance {
                 *extent = extent.max(distance);
             }
