@@ -175,7 +175,7 @@ impl<'s> Neighbourhood<'s> {
 }
 
 /// Contacts are looked for again after they were carried along for so many steps,
-const CARRIES: u8 = 0;
+const CARRIES: u8 = 1;
 /// or when any point of the body may have moved farther than this, metres.
 const CARRY: f32 = 0.003;
 /// The point of the disc around `at` that is nearest to, or deepest in, the body, with the gap and gradient there.
