@@ -23,7 +23,8 @@ pub(crate) use margin::firmness;
 pub use margin::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
 pub(crate) use motion::Settings;
 pub(crate) use release::release_pose;
-pub(crate) use settle::{Fate, comes_free, settle};
+pub use settle::Fate;
+pub(crate) use settle::{comes_free, settle};
 pub(crate) use support::{Support, choose_representatives};
 
 /// Standard gravity, m/s².

@@ -6,9 +6,9 @@ use super::{Body, GRAVITY, Support};
 use crate::geometry::{Pose, Vector};
 use crate::monitor::{Meter, Stop};
 
-/// How it ended.
+/// How it ends when an object is let go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Fate {
+pub enum Fate {
     /// It rests on the supporter.
     Rests,
     /// It sank too far and had turned: it rotated off.

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
-use hangpose::Params;
+use hangpose::{Candidates, Params};
 use host_tests::tables::run::{Engine, Options, run};
 use host_tests::tables::{case, real, report};
 use indicatif::ProgressBar;
@@ -42,6 +42,9 @@ struct Arguments {
     /// Drop all of the ten best poses, not only until one succeeds: for the calibration of the probability.
     #[arg(long)]
     all: bool,
+    /// Only the profiles side by side.
+    #[arg(long)]
+    summary: bool,
     /// Keep the rows that the JSON file has, instead of beginning anew.
     #[arg(long)]
     resume: bool,
@@ -52,8 +55,33 @@ struct Arguments {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Profile {
+    /// The published method.
     Paper,
+    /// Ours.
     Default,
+    /// The published method about the true centre of mass, without poses that collide.
+    SitesOnly,
+    /// The same, let go: only what stays is given, the most probable first.
+    SitesSettled,
+    /// Ours without gravity: the most promising contacts, as they are.
+    ContactsOnly,
+    /// Ours, at most eight poses let go.
+    EightAttempts,
+}
+
+impl Profile {
+    fn params(self) -> Params {
+        let ours = Params::default();
+        let candidates = Candidates::Sites;
+        match self {
+            Self::Paper => Params::paper(),
+            Self::Default => ours,
+            Self::SitesOnly => Params { candidates, settle: false, ..ours },
+            Self::SitesSettled => Params { candidates, ..ours },
+            Self::ContactsOnly => Params { settle: false, ..ours },
+            Self::EightAttempts => Params { settle_attempts: 8, ..ours },
+        }
+    }
 }
 
 fn main() -> Result<()> {
@@ -68,9 +96,9 @@ fn main() -> Result<()> {
     let profiles: Vec<(String, Params)> = arguments
         .profile
         .iter()
-        .map(|profile| match profile {
-            Profile::Paper => ("paper".into(), Params::paper()),
-            Profile::Default => ("default".into(), Params::default()),
+        .map(|profile| {
+            let name = profile.to_possible_value().map_or_else(String::new, |value| value.get_name().into());
+            (name, profile.params())
         })
         .collect();
     let work = |cases: &[case::Case], engine| {
@@ -89,6 +117,10 @@ fn main() -> Result<()> {
         })
     };
     let made = work(&case::made(arguments.pairs, arguments.seed), arguments.engine)?;
+    if arguments.summary {
+        print!("{}", report::summary(&made));
+        return Ok(());
+    }
     let mut text = report::heading(&made);
     text += &report::tables("Made pairs", &made);
     if let Some(folder) = &arguments.meshes {

@@ -1,5 +1,6 @@
 //! Predicts poses for many pairs, drops them, and says in tables what became of them.
 
+mod calibration;
 pub mod case;
 pub mod real;
 pub mod report;

@@ -1,5 +1,6 @@
 //! The tables, as Markdown.
 
+use super::calibration;
 use super::row::{Failure, Outcome, Row};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -31,9 +32,37 @@ pub fn heading(rows: &[Row]) -> String {
     )
 }
 
+/// The profiles side by side.
+pub fn summary(rows: &[Row]) -> String {
+    let mut profiles: Vec<&str> = rows.iter().map(|row| row.profile.as_str()).collect();
+    profiles.dedup();
+    let mut text = String::from(
+        "| profile | pairs | found | success | robust | top 10 | rejected | seconds, median |\n|---|--:|--:|--:|--:|--:|--:|--:|\n",
+    );
+    for profile in profiles {
+        let (fits, rest): (Vec<&Row>, Vec<&Row>) =
+            rows.iter().filter(|row| row.profile == profile).partition(|row| row.fits);
+        let count =
+            |holds: &dyn Fn(&Row) -> bool| wilson(fits.iter().filter(|row| holds(row)).count(), fits.len());
+        let rejected = rest.iter().filter(|row| row.rejection.is_some()).count();
+        let [median, _] = median_and_slowest(fits.iter().map(|row| row.seconds)).unwrap_or_default();
+        let _ = writeln!(
+            text,
+            "| {profile} | {} | {} | {} | {} | {} | {} | {median:.3} |",
+            fits.len(),
+            count(&|row| !row.outcomes.is_empty()),
+            count(&|row| row.first().is_some_and(Outcome::success)),
+            count(&|row| row.first().is_some_and(|outcome| outcome.success() && outcome.robust)),
+            count(&|row| row.succeeds_within(10)),
+            wilson(rejected, rest.len()),
+        );
+    }
+    text + "\n"
+}
+
 /// All tables for the rows of one kind of pairs, profile beside profile.
 pub fn tables(title: &str, rows: &[Row]) -> String {
-    let mut text = format!("## {title}\n\n");
+    let mut text = format!("## {title}\n\n{}", summary(rows));
     let mut profiles: Vec<&str> = rows.iter().map(|row| row.profile.as_str()).collect();
     profiles.dedup();
     for profile in profiles {
@@ -65,6 +94,7 @@ pub fn tables(title: &str, rows: &[Row]) -> String {
             );
         }
         text += &agreement(&fits);
+        text += &calibration::table(&fits);
         text += &failures(&fits);
     }
     text

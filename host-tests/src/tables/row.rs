@@ -143,9 +143,9 @@ const ROTATED_OFF: f32 = 0.7;
 /// Why the best pose of a pair that fits does not hang.
 #[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
 pub enum Failure {
-    /// The object or the supporter has no site.
+    /// The object or the supporter has no place to hang by or on.
     NoSite,
-    /// There are sites, but none goes with another.
+    /// There are places to hang by and on, but nothing stays of what was tried.
     NoMatch,
     /// The pose runs through the supporter.
     Penetration,
@@ -173,14 +173,12 @@ impl Failure {
     /// What would mend it.
     pub fn remedy(self) -> &'static str {
         match self {
-            Self::NoSite => {
-                "more candidate sites: smaller clusters, rims and domes, pegs steeper than alpha_s"
-            }
-            Self::NoMatch => "test the real section against the hole instead of a bounding sphere; more yaws",
-            Self::Penetration => "move the pose out along the signed distance before it is given",
-            Self::SlidOff => "let gravity act before the answer; choose sites in the hook's valley",
-            Self::RotatedOff => "let gravity act before the answer; centre of mass under the contact",
-            Self::Wedged => "reject poses whose way out is blocked",
+            Self::NoSite => "more candidates: smaller clusters of sites, contacts closer together, more yaws",
+            Self::NoMatch => "test the real section against the hole; more yaws; let more poses go",
+            Self::Penetration => "a finer distance field for what is thinner than its voxels",
+            Self::SlidOff => "a margin that sees how far a body slides before it leaves",
+            Self::RotatedOff => "a probability that weighs balances on one contact less",
+            Self::Wedged => "prefer openings with more play",
         }
     }
 }
@@ -200,8 +198,10 @@ impl Row {
     pub fn failure(&self) -> Option<Failure> {
         match (self.first(), self.rejection.as_deref()) {
             (Some(outcome), _) => outcome.failure(),
-            (None, Some("TooThick" | "AllCollide")) => Some(Failure::NoMatch),
-            (None, _) => Some(Failure::NoSite),
+            (None, Some("NoContactPoints" | "NoFreeSpace" | "NotEncircled" | "NoSupport")) => {
+                Some(Failure::NoSite)
+            }
+            (None, _) => Some(Failure::NoMatch),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::{InspectArguments, Role, terminal};
 use anyhow::Result;
 use hangpose::files::{self, MeshFile, SupporterFile};
 use hangpose::geometry::{MassProperties, Vector};
-use hangpose::{CentreOfMass, Monitor, analyze_object, analyze_supporter};
+use hangpose::{Candidates, CentreOfMass, Monitor, analyze_object, analyze_supporter};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -47,6 +47,7 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
         centre_of_mass: object.centre_of_mass().into(),
         counts: object.counts(),
         sites: json::sites(object.sites()),
+        contacts: object.contacts(),
         seconds,
     };
     if arguments.json {
@@ -71,10 +72,27 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
         None => "volume          none: the mesh has gaps, or not all its triangles face outwards\n".into(),
     };
     text += &format!("area            {:.1} cm2\n", mass.area * 1e4);
-    text += &format!(
-        "contact points  {}, in {} clusters, {} with free space, {} encircled, {} different\n",
-        counts.contact_points, counts.clusters, counts.with_free_space, counts.encircled, counts.sites
-    );
+    text += &match params.candidates {
+        Candidates::Sites => format!(
+            "contact points  {}, in {} clusters, {} with free space, {} encircled, {} different\n",
+            counts.contact_points, counts.clusters, counts.with_free_space, counts.encircled, counts.sites
+        ),
+        Candidates::Contacts => format!(
+            "contact points  {}, of which {} are tried; the best caught:\n",
+            counts.contact_points, counts.contacts
+        ),
+    };
+    if !object.contacts().is_empty() {
+        text += "place  position, mm               bar direction          caught over, mm\n";
+    }
+    for (index, contact) in object.contacts().iter().enumerate().take(SHOWN) {
+        text += &format!(
+            "{index:5}  {}  {}  {:15.1}\n",
+            millimetres(&contact.position.coords),
+            direction(&contact.bar_direction),
+            contact.capture * 1000.0,
+        );
+    }
     if !object.sites().is_empty() {
         text += "site  position, mm               hanging direction      free space, mm  encircled  points\n";
     }
@@ -113,6 +131,7 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
         normals_renormalised: supporter.normals().renormalised,
         counts: supporter.counts(),
         sites: json::sites(supporter.sites()),
+        contacts: supporter.contacts(),
         seconds,
     };
     if arguments.json {
@@ -125,10 +144,25 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
     );
     text += &format!("size            {} mm\n", millimetres(&extents));
     text += &scale(&inspected.scale_warning);
-    text += &format!(
-        "contact points  {}, in {} clusters, {} of them sites\n",
-        counts.contact_points, counts.clusters, counts.sites
-    );
+    text += &match params.candidates {
+        Candidates::Sites => format!(
+            "contact points  {}, in {} clusters, {} of them sites\n",
+            counts.contact_points, counts.clusters, counts.sites
+        ),
+        Candidates::Contacts => {
+            format!("contact points  {}, of which {} are tried:\n", counts.contact_points, counts.contacts)
+        }
+    };
+    if !supporter.contacts().is_empty() {
+        text += "place  position, mm               stretches along\n";
+    }
+    for (index, contact) in supporter.contacts().iter().enumerate().take(SHOWN) {
+        text += &format!(
+            "{index:5}  {}  {}\n",
+            millimetres(&contact.position.coords),
+            direction(&contact.bar_direction)
+        );
+    }
     if !supporter.sites().is_empty() {
         text += "site  position, mm               hanging direction      radius, mm  to the boundary, mm\n";
     }
@@ -143,6 +177,9 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
     }
     Ok(text)
 }
+
+/// Places that are listed at most; the JSON has all.
+const SHOWN: usize = 10;
 
 fn scale(warning: &Option<String>) -> String {
     format!("scale           {}\n", warning.as_deref().unwrap_or("as expected of something for a hand"))

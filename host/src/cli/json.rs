@@ -3,8 +3,8 @@
 use hangpose::Params;
 use hangpose::geometry::MassProperties;
 use hangpose::hanging::{
-    Cost, Counts, HangabilityCounts, HangingPose, HangingSite, Rejection, Stage, SupportSite,
-    SupportabilityCounts,
+    Cost, Counts, HangabilityCounts, HangingPose, HangingSite, ObjectContact, Rejection, Stage,
+    SupportContact, SupportSite, SupportabilityCounts,
 };
 use hangpose::mechanics::{Contact, Margin};
 use serde::Serialize;
@@ -105,6 +105,7 @@ pub(super) struct InspectedObject<'a> {
     pub(super) centre_of_mass: [f32; 3],
     pub(super) counts: HangabilityCounts,
     pub(super) sites: Vec<Site<'a, HangingSite>>,
+    pub(super) contacts: &'a [ObjectContact],
     pub(super) seconds: f64,
 }
 
@@ -122,6 +123,7 @@ pub(super) struct InspectedSupporter<'a> {
     pub(super) normals_renormalised: usize,
     pub(super) counts: SupportabilityCounts,
     pub(super) sites: Vec<Site<'a, SupportSite>>,
+    pub(super) contacts: &'a [SupportContact],
     pub(super) seconds: f64,
 }
 
