@@ -11,25 +11,21 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const PAIRS: usize = 44;
 const SEED: u64 = 7;
 
-/// The best pose of a pair, by the method as published.
-fn best(case: &Case) -> Option<HangingPose> {
-    let (params, monitor) = (Params::paper(), Monitor::new());
+/// The best pose of a pair.
+fn best(case: &Case, params: &Params) -> Option<HangingPose> {
+    let monitor = Monitor::new();
     let mesh = Mesh::new(&case.object.vertices, &case.object.triangles).unwrap();
     let supporter = Mesh::new(&case.supporter.vertices, &case.supporter.triangles).unwrap();
     let cloud = sample_supporter(&supporter, 10_000, case.seed);
     let (mut memory, mut more_memory) = (Vec::new(), Vec::new());
-    let object = analyze_object(&mesh, &params, &mut memory, &monitor).unwrap();
-    let supporter = analyze_supporter(&cloud.cloud().unwrap(), &params, &mut more_memory, &monitor).unwrap();
+    let object = analyze_object(&mesh, params, &mut memory, &monitor).unwrap();
+    let supporter = analyze_supporter(&cloud.cloud().unwrap(), params, &mut more_memory, &monitor).unwrap();
     let mut poses = [HangingPose::default(); 1];
-    hangpose::predict_poses(&object, &supporter, &params, &mut poses, &monitor)
-        .unwrap()
-        .poses
-        .first()
-        .copied()
+    hangpose::predict_poses(&object, &supporter, params, &mut poses, &monitor).unwrap().poses.first().copied()
 }
 
 /// How many of the pairs hang by their best pose, once it is changed by each of `changes`.
-fn successes<const N: usize>(changes: [fn(HangingPose) -> HangingPose; N]) -> [usize; N] {
+fn successes<const N: usize>(params: &Params, changes: [fn(HangingPose) -> HangingPose; N]) -> [usize; N] {
     let cases: Vec<Case> = made(PAIRS, SEED).into_iter().filter(|case| case.fits).collect();
     assert_eq!(cases.len(), PAIRS);
     let (next, counts) = (AtomicUsize::new(0), [const { AtomicUsize::new(0) }; N]);
@@ -37,7 +33,7 @@ fn successes<const N: usize>(changes: [fn(HangingPose) -> HangingPose; N]) -> [u
         for _ in 0..2 {
             scope.spawn(|| {
                 while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let Some(pose) = best(case) else { continue };
+                    let Some(pose) = best(case, params) else { continue };
                     let mut scene = Scene::new(&case.object, &case.supporter);
                     scene.tilt = false;
                     for (count, change) in counts.iter().zip(changes) {
@@ -62,13 +58,22 @@ fn the_published_method_hangs_its_share_and_a_broken_one_does_not() {
         pose.pose.translation = Translation3::new(0.0, 0.04, 0.0) * pose.pose.translation;
         pose
     };
-    let [intact, turned, moved] = successes([|pose| pose, upside_down, beside]);
+    let [intact, turned, moved] = successes(&Params::paper(), [|pose| pose, upside_down, beside]);
     println!("{intact} of {PAIRS} hang; upside down {turned}, 40 mm beside {moved}");
     // Somewhat less than the half that the tables show for the published method, and far more than a predictor
     // reaches that gets the rotation or the place wrong.
     let floor = PAIRS * 35 / 100;
     assert!(intact >= floor, "only {intact} of {PAIRS} pairs hang");
     assert!(turned < floor && moved < floor, "the floor would pass a broken predictor");
+}
+
+#[test]
+fn what_was_let_go_before_it_is_given_stays_when_it_is_dropped() {
+    let [hang] = successes(&Params::default(), [|pose| pose]);
+    println!("{hang} of {PAIRS} hang");
+    // The tables show nine of ten; without gravity it is a good half.
+    let floor = PAIRS * 78 / 100;
+    assert!(hang >= floor, "only {hang} of {PAIRS} pairs hang");
 }
 
 #[test]

@@ -78,7 +78,7 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
             counts.contact_points, counts.clusters, counts.with_free_space, counts.encircled, counts.sites
         ),
         Candidates::Contacts => format!(
-            "contact points  {}, of which {} are tried; the best caught:\n",
+            "contact points  {}, of which {} are tried, those that catch best first\n",
             counts.contact_points, counts.contacts
         ),
     };
@@ -150,7 +150,7 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
             counts.contact_points, counts.clusters, counts.sites
         ),
         Candidates::Contacts => {
-            format!("contact points  {}, of which {} are tried:\n", counts.contact_points, counts.contacts)
+            format!("contact points  {}, of which {} are tried\n", counts.contact_points, counts.contacts)
         }
     };
     if !supporter.contacts().is_empty() {

@@ -116,8 +116,8 @@ fn an_open_mesh_is_open_and_an_inverted_one_told() {
 fn nothing_to_hang_by_is_no_error() {
     let run = run!("inspect", Scene::new().ball);
     assert_eq!(run.status, Some(0));
-    assert!(run.stdout.contains("0 different"), "{}", run.stdout);
-    assert!(!run.stdout.contains("\nsite "));
+    assert!(run.stdout.contains("of which 0 are tried"), "{}", run.stdout);
+    assert!(!run.stdout.contains("\nplace "));
 }
 
 #[test]

@@ -32,7 +32,8 @@ fn the_document_has_the_fields_that_programs_read() {
     let fates = ["rotated_off", "slid_off", "moving", "at_rest"].map(settling);
     assert_eq!(settling("released"), fates.iter().sum::<u64>(), "each ended somehow");
     assert!(settling("candidates") >= settling("clear") && settling("at_rest") >= settling("firm"));
-    assert_eq!(settling("firm"), document["poses"].as_array().unwrap().len() as u64);
+    // Those that are worse than ten others are not told.
+    assert_eq!(settling("probable").min(10), document["poses"].as_array().unwrap().len() as u64);
 
     assert_eq!(document["params"]["samples"], 10_000);
     assert_eq!(document["params"]["seed"], 0);
