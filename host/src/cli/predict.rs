@@ -181,13 +181,14 @@ fn table(prediction: &hanging::Prediction, mesh: &Mesh, object: &Object, support
 fn in_words(rest: &Rest) -> String {
     let margin = &rest.margin;
     let tilt = margin.least_tilt().to_degrees();
-    let or_more = if margin.least_tilt() >= hangpose::mechanics::Margin::MOST_TILT { " or more" } else { "" };
+    let at_least =
+        if margin.least_tilt() >= hangpose::mechanics::Margin::MOST_TILT { "at least " } else { "" };
     let at = rest.contacts().iter().max_by(|a, b| a.force.total_cmp(&b.force)).map_or(String::new(), |c| {
         let [x, y, z] = [c.position.x, c.position.y, c.position.z].map(|x| 1000.0 * x);
         format!(", on ({x:.0}, {y:.0}, {z:.0}) mm")
     });
     format!(
-        "hangs with a probability of {:.0} %: stays up to a {tilt:.0} degree tilt{or_more} or a {:.1} m/s knock; let go, it sinks {:.1} mm{at}",
+        "hangs with a probability of {:.0} %: stays up to {at_least}a {tilt:.0} degree tilt or a {:.1} m/s knock; let go, it sinks {:.1} mm{at}",
         100.0 * rest.probability,
         margin.knock_speed,
         1000.0 * rest.sinking,

@@ -61,9 +61,9 @@ fn the_table_says_what_was_read_and_agrees_with_the_json() {
     for (line, pose) in lines[1..].iter().zip(poses) {
         let margin = &pose["margin"];
         let tilt = numbers::<8>(&margin["tilts"]).into_iter().fold(f64::INFINITY, f64::min);
-        let or_more = if tilt >= 1.2 { " or more" } else { "" };
+        let at_least = if tilt >= 1.2 { "at least " } else { "" };
         let words = format!(
-            "{:4}  hangs with a probability of {:.0} %: stays up to a {:.0} degree tilt{or_more} or a {:.1} m/s knock; let go, it sinks {:.1} mm, on (",
+            "{:4}  hangs with a probability of {:.0} %: stays up to {at_least}a {:.0} degree tilt or a {:.1} m/s knock; let go, it sinks {:.1} mm, on (",
             number(&pose["rank"]),
             100.0 * number(&pose["probability"]),
             tilt.to_degrees(),
