@@ -92,8 +92,10 @@ impl Settling<'_> {
             }
             tried_object[candidate.contacts[0] as usize] += share * TRIED_OBJECT;
             tried_support[candidate.contacts[1] as usize] += share * TRIED_SUPPORT;
-            if if self.params.settle { self.counts.firm >= self.params.firm_enough } else { poses.is_full() }
-            {
+            let counts = &self.counts;
+            let is_enough =
+                if self.params.settle { counts.firm >= self.params.firm_enough } else { poses.is_full() };
+            if is_enough {
                 break;
             }
         }
