@@ -7,20 +7,19 @@ use std::fmt::Write;
 /// Bounds of the bins: most poses are said to be likely.
 const BINS: [f32; 8] = [0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.975, 1.0];
 
-/// The reliability of the probabilities of all poses that were dropped, as a table and a plot; nothing if there are none.
-///
-/// Of a pair the poses are dropped until one hangs, unless all are, so that those behind it do not count.
+/// The reliability of the probabilities of the best poses, as a table and a plot; nothing if there are none. The others are only
+/// dropped while none hangs, so they are no fair sample.
 pub(super) fn table(rows: &[&Row]) -> String {
     let poses: Vec<(Said, bool)> = rows
         .iter()
-        .flat_map(|row| &row.outcomes)
+        .filter_map(|row| row.first())
         .filter_map(|outcome| Some((outcome.said?, Outcome::success(outcome))))
         .collect();
     if poses.is_empty() {
         return String::new();
     }
     let mut text = String::from(
-        "The probability that each dropped pose was given, and what became of it:\n\n| said | poses | said, mean, % | hangs, % |\n|---|--:|--:|--:|\n",
+        "The probability that each best pose was given, and what became of it:\n\n| said | poses | said, mean, % | hangs, % |\n|---|--:|--:|--:|\n",
     );
     let (mut said_means, mut shares) = (Vec::new(), Vec::new());
     for bounds in BINS.windows(2) {
