@@ -9,7 +9,8 @@ use hangpose_core::memory::Limits;
 use hangpose_core::{Candidates, Monitor, Params};
 
 /// The largest inputs that this program takes.
-const LIMITS: Limits = Limits { vertices: 1000, triangles: 2000, samples: 2000, voxels: 20_000, points: 2000 };
+const LIMITS: Limits =
+    Limits { vertices: 1000, triangles: 2000, samples: 2000, voxels: 20_000, points: 2000 };
 const PARAMS: Params = Params {
     samples: LIMITS.samples,
     voxels: LIMITS.voxels,
@@ -55,7 +56,7 @@ pub unsafe extern "C" fn hangpose_demo(
             (&mut *&raw mut OBJECT, &mut *&raw mut SUPPORTER, &mut *&raw mut WORKING),
         )
     };
-    let count = best(vertices, triangles, points, position, memory);
+    let count = best(vertices, triangles, points, position, (memory.0, memory.1, memory.2));
     IS_BUSY.store(false, Ordering::Release);
     count.map_or(-1, |count| count as i32)
 }
