@@ -13,6 +13,7 @@ mod border;
 mod cloud;
 mod detail;
 mod failure;
+mod getter;
 mod handle;
 mod limits;
 mod mesh;

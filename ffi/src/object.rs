@@ -1,6 +1,7 @@
-use crate::border::{DETAIL, Public, Region, input, keep_apart, output, place, report};
+use crate::border::{DETAIL, Public, Region, input, keep_apart, place, report};
 use crate::detail::hangpose_detail;
 use crate::failure::Failure;
+use crate::getter::{at, get};
 use crate::handle::{Handle, Model};
 use crate::mesh::hangpose_mesh;
 use crate::monitor::{self, hangpose_monitor};
@@ -131,16 +132,9 @@ pub unsafe extern "C" fn hangpose_object_get_info(
     info: *mut hangpose_object_info,
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
-    let get = || {
-        // SAFETY: the caller vouches for the pointer.
-        let object = unsafe { ObjectHandle::share(object.cast()) }?;
-        let [handle, arena] = object.regions();
-        keep_apart(&[Region::written(DETAIL, detail, 1), Region::written("info", info, 1), handle, arena])?;
-        // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
-        let info = unsafe { output(info) }?;
-        let object = object.model();
+    let read = |object: &Object| {
         let (mass, counts, work) = (object.mass(), object.counts(), object.work());
-        *info = hangpose_object_info {
+        Ok(hangpose_object_info {
             struct_size: size_of::<hangpose_object_info>() as u32,
             stopped: stopped(object.stopped()),
             is_closed: u32::from(mass.is_closed),
@@ -156,11 +150,10 @@ pub unsafe extern "C" fn hangpose_object_get_info(
             contacts: object.contacts().len() as u32,
             rays: work.rays,
             distance_queries: work.distance_queries,
-        };
-        Ok(HANGPOSE_OK)
+        })
     };
-    // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, get) }
+    // SAFETY: the caller vouches for the pointers.
+    unsafe { get(object.cast::<ObjectHandle>(), info, detail, read) }
 }
 
 /// A place on an object into which a supporter can reach.
@@ -200,20 +193,9 @@ pub unsafe extern "C" fn hangpose_object_get_site(
     site: *mut hangpose_object_site,
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
-    let get = || {
-        // SAFETY: the caller vouches for the pointer.
-        let object = unsafe { ObjectHandle::share(object.cast()) }?;
-        let [handle, arena] = object.regions();
-        keep_apart(&[Region::written(DETAIL, detail, 1), Region::written("site", site, 1), handle, arena])?;
-        // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
-        let site = unsafe { output(site) }?;
-        let sites = object.model().sites();
-        let found = sites.get(index as usize).ok_or(Failure::Index {
-            argument: "index",
-            index,
-            count: sites.len(),
-        })?;
-        *site = hangpose_object_site {
+    let read = |object: &Object| {
+        let found = at(object.sites(), index)?;
+        Ok(hangpose_object_site {
             struct_size: size_of::<hangpose_object_site>() as u32,
             contact_points: found.contact_points,
             position: found.position.into(),
@@ -223,11 +205,10 @@ pub unsafe extern "C" fn hangpose_object_get_site(
             encircled: found.encircled,
             encircled_above: found.encircled_above,
             encircled_below: found.encircled_below,
-        };
-        Ok(HANGPOSE_OK)
+        })
     };
-    // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, get) }
+    // SAFETY: the caller vouches for the pointers.
+    unsafe { get(object.cast::<ObjectHandle>(), site, detail, read) }
 }
 
 /// A place where an object can lie on something.
@@ -262,34 +243,17 @@ pub unsafe extern "C" fn hangpose_object_get_contact(
     contact: *mut hangpose_object_contact,
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
-    let get = || {
-        // SAFETY: the caller vouches for the pointer.
-        let object = unsafe { ObjectHandle::share(object.cast()) }?;
-        let [handle, arena] = object.regions();
-        keep_apart(&[
-            Region::written(DETAIL, detail, 1),
-            Region::written("contact", contact, 1),
-            handle,
-            arena,
-        ])?;
-        // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
-        let contact = unsafe { output(contact) }?;
-        let contacts = object.model().contacts();
-        let found = contacts.get(index as usize).ok_or(Failure::Index {
-            argument: "index",
-            index,
-            count: contacts.len(),
-        })?;
-        *contact = hangpose_object_contact {
+    let read = |object: &Object| {
+        let found = at(object.contacts(), index)?;
+        Ok(hangpose_object_contact {
             struct_size: size_of::<hangpose_object_contact>() as u32,
             position: found.position.into(),
             normal: found.normal.into(),
             bar_direction: found.bar_direction.into(),
             capture: found.capture,
             room: found.room,
-        };
-        Ok(HANGPOSE_OK)
+        })
     };
-    // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, get) }
+    // SAFETY: the caller vouches for the pointers.
+    unsafe { get(object.cast::<ObjectHandle>(), contact, detail, read) }
 }

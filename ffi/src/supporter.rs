@@ -1,7 +1,8 @@
-use crate::border::{DETAIL, Public, Region, input, keep_apart, output, place, report};
+use crate::border::{DETAIL, Public, Region, input, keep_apart, place, report};
 use crate::cloud::hangpose_cloud;
 use crate::detail::hangpose_detail;
 use crate::failure::Failure;
+use crate::getter::{at, get};
 use crate::handle::{Handle, Model};
 use crate::monitor::{self, hangpose_monitor};
 use crate::params::hangpose_params;
@@ -179,16 +180,9 @@ pub unsafe extern "C" fn hangpose_supporter_get_info(
     info: *mut hangpose_supporter_info,
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
-    let get = || {
-        // SAFETY: the caller vouches for the pointer.
-        let supporter = unsafe { SupporterHandle::share(supporter.cast()) }?;
-        let [handle, arena] = supporter.regions();
-        keep_apart(&[Region::written(DETAIL, detail, 1), Region::written("info", info, 1), handle, arena])?;
-        // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
-        let info = unsafe { output(info) }?;
-        let supporter = supporter.model();
+    let read = |supporter: &Supporter| {
         let (normals, counts, work) = (supporter.normals(), supporter.counts(), supporter.work());
-        *info = hangpose_supporter_info {
+        Ok(hangpose_supporter_info {
             struct_size: size_of::<hangpose_supporter_info>() as u32,
             stopped: stopped(supporter.stopped()),
             points: supporter.points().points().len() as u32,
@@ -200,11 +194,10 @@ pub unsafe extern "C" fn hangpose_supporter_get_info(
             contacts: supporter.contacts().len() as u32,
             rays: work.rays,
             distance_queries: work.distance_queries,
-        };
-        Ok(HANGPOSE_OK)
+        })
     };
-    // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, get) }
+    // SAFETY: the caller vouches for the pointers.
+    unsafe { get(supporter.cast::<SupporterHandle>(), info, detail, read) }
 }
 
 /// A place on a supporter that something can hang on.
@@ -240,31 +233,19 @@ pub unsafe extern "C" fn hangpose_supporter_get_site(
     site: *mut hangpose_supporter_site,
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
-    let get = || {
-        // SAFETY: the caller vouches for the pointer.
-        let supporter = unsafe { SupporterHandle::share(supporter.cast()) }?;
-        let [handle, arena] = supporter.regions();
-        keep_apart(&[Region::written(DETAIL, detail, 1), Region::written("site", site, 1), handle, arena])?;
-        // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
-        let site = unsafe { output(site) }?;
-        let sites = supporter.model().sites();
-        let found = sites.get(index as usize).ok_or(Failure::Index {
-            argument: "index",
-            index,
-            count: sites.len(),
-        })?;
-        *site = hangpose_supporter_site {
+    let read = |supporter: &Supporter| {
+        let found = at(supporter.sites(), index)?;
+        Ok(hangpose_supporter_site {
             struct_size: size_of::<hangpose_supporter_site>() as u32,
             position: found.position.into(),
             hanging_direction: found.hanging_direction.into(),
             contact_point: found.contact_point.into(),
             support_radius: found.support_radius,
             boundary_distances: found.boundary_distances,
-        };
-        Ok(HANGPOSE_OK)
+        })
     };
-    // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, get) }
+    // SAFETY: the caller vouches for the pointers.
+    unsafe { get(supporter.cast::<SupporterHandle>(), site, detail, read) }
 }
 
 /// A place where something can lie on a supporter.
@@ -295,32 +276,15 @@ pub unsafe extern "C" fn hangpose_supporter_get_contact(
     contact: *mut hangpose_supporter_contact,
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
-    let get = || {
-        // SAFETY: the caller vouches for the pointer.
-        let supporter = unsafe { SupporterHandle::share(supporter.cast()) }?;
-        let [handle, arena] = supporter.regions();
-        keep_apart(&[
-            Region::written(DETAIL, detail, 1),
-            Region::written("contact", contact, 1),
-            handle,
-            arena,
-        ])?;
-        // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
-        let contact = unsafe { output(contact) }?;
-        let contacts = supporter.model().contacts();
-        let found = contacts.get(index as usize).ok_or(Failure::Index {
-            argument: "index",
-            index,
-            count: contacts.len(),
-        })?;
-        *contact = hangpose_supporter_contact {
+    let read = |supporter: &Supporter| {
+        let found = at(supporter.contacts(), index)?;
+        Ok(hangpose_supporter_contact {
             struct_size: size_of::<hangpose_supporter_contact>() as u32,
             position: found.position.into(),
             normal: found.normal.into(),
             bar_direction: found.bar_direction.into(),
-        };
-        Ok(HANGPOSE_OK)
+        })
     };
-    // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, get) }
+    // SAFETY: the caller vouches for the pointers.
+    unsafe { get(supporter.cast::<SupporterHandle>(), contact, detail, read) }
 }

@@ -1,0 +1,42 @@
+//! What the getters of objects and supporters have in common.
+
+use crate::border::{DETAIL, Public, Region, keep_apart, output, report};
+use crate::detail::hangpose_detail;
+use crate::failure::Failure;
+use crate::handle::{Handle, Model};
+use crate::status::{HANGPOSE_OK, hangpose_status};
+
+/// Writes what `read` takes from a model to `answer`.
+///
+/// # Safety
+///
+/// As [`Handle::share`]'s, and what the caller of C vouches for, see the top of `border.rs`.
+pub(crate) unsafe fn get<M: Model, T: Public>(
+    handle: *const Handle<M>,
+    answer: *mut T,
+    detail: *mut hangpose_detail,
+    read: impl FnOnce(&M) -> Result<T, Failure>,
+) -> hangpose_status {
+    let get = || {
+        // SAFETY: as this function's.
+        let shared = unsafe { Handle::share(handle) }?;
+        let [handle, arena] = shared.regions();
+        keep_apart(&[
+            Region::written(DETAIL, detail, 1),
+            Region::written(T::NAME, answer, 1),
+            handle,
+            arena,
+        ])?;
+        // SAFETY: the caller vouches for the pointer, and it is apart from the rest.
+        let answer = unsafe { output(answer) }?;
+        *answer = read(shared.model())?;
+        Ok(HANGPOSE_OK)
+    };
+    // SAFETY: the caller vouches for the detail.
+    unsafe { report(detail, get) }
+}
+
+/// The item with this index.
+pub(crate) fn at<T>(items: &[T], index: u32) -> Result<&T, Failure> {
+    items.get(index as usize).ok_or(Failure::Index { argument: "index", index, count: items.len() })
+}
