@@ -162,7 +162,7 @@ typedef struct hangpose_params {
   float friction;
   // How far off the supporter the object is let go, metres, where there is room for that; 0 to 0.01.
   float clearance;
-  // Nodes of the object's signed distance field at most; 0 to 100000000, at least 1 for `settle` and for
+  // Nodes of the object's signed distance field at most; 0 to 10000000, at least 1 for `settle` and for
   // HANGPOSE_CANDIDATES_CONTACTS.
   uint32_t voxels;
   // Poses that are let go at most; 0 to 10000.
@@ -592,7 +592,8 @@ typedef struct hangpose_prediction {
 // Let go, the object does not come to rest.
 #define HANGPOSE_STAGE_NEVER_RESTS 9
 
-// The object comes to rest, but a nudge would bring it down, or there is no room to put it there.
+// The object comes to rest, but a nudge would bring it down, it would not come off again, or there is no room to put it
+// there.
 #define HANGPOSE_STAGE_TOO_LOOSE 10
 
 // The library's own method.

@@ -41,6 +41,11 @@ pub struct Limits {
     pub points: usize,
 }
 
+impl Limits {
+    /// Nothing of anything, to name only what matters: `Limits { points, ..Limits::NONE }`.
+    pub const NONE: Self = Self { vertices: 0, triangles: 0, samples: 0, voxels: 0, points: 0 };
+}
+
 /// Bytes that an [`Arena`] spends on `count` values of `T`.
 pub(crate) const fn array_bytes<T>(count: usize) -> usize {
     count.saturating_mul(size_of::<T>()).saturating_add(ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT

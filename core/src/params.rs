@@ -233,7 +233,7 @@ impl Default for Params {
 }
 
 /// More nodes than this are finer than any mesh of a thing that a robot hangs.
-pub(crate) const MAX_VOXELS: usize = 100_000_000;
+pub(crate) const MAX_VOXELS: usize = 10_000_000;
 
 /// More samples than this serve no object that a robot can hold.
 pub const MAX_SAMPLES: usize = 500_000;

@@ -26,13 +26,7 @@ fn main() -> ExitCode {
     let object = analyze_object(&mesh, &params, &mut object_memory, &monitor).expect("an object");
     let supporter = analyze_supporter(&cloud, &params, &mut supporter_memory, &monitor).expect("a supporter");
     let mut poses = [HangingPose::default(); POSES];
-    let limits = Limits {
-        vertices: mesh.vertices().len(),
-        triangles: mesh.triangles().len(),
-        samples: params.samples,
-        voxels: params.voxels,
-        points: cloud.points().len(),
-    };
+    let limits = Limits { points: cloud.points().len(), ..Object::limits(&mesh, &params) };
     let mut work = vec![0; predict_bytes(&limits)];
     let mut rust_predict = || {
         let found = predict(&object, &supporter, &params, &mut poses, &mut work, &monitor);

@@ -101,7 +101,7 @@ pub struct hangpose_params {
     pub friction: f32,
     /// How far off the supporter the object is let go, metres, where there is room for that; 0 to 0.01.
     pub clearance: f32,
-    /// Nodes of the object's signed distance field at most; 0 to 100000000, at least 1 for `settle` and for
+    /// Nodes of the object's signed distance field at most; 0 to 10000000, at least 1 for `settle` and for
     /// HANGPOSE_CANDIDATES_CONTACTS.
     pub voxels: u32,
     /// Poses that are let go at most; 0 to 10000.

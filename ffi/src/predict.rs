@@ -129,7 +129,7 @@ pub unsafe extern "C" fn hangpose_predict(
         check("poses", poses.cast_const())?;
         let (object, supporter) = (object.model(), supporter.model());
         let points = supporter.points().points().len();
-        let limits = Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points };
+        let limits = Limits { points, ..Limits::NONE };
         let (slots, memory) = pose_slots(memory, pose_capacity, predict_bytes(&limits))?;
         let none = Monitor::new();
         let found = predict(object, supporter, &params, slots, memory, monitor.unwrap_or(&none))?;

@@ -69,7 +69,8 @@ pub const HANGPOSE_STAGE_ROTATES_OFF: hangpose_stage = 7;
 pub const HANGPOSE_STAGE_SLIDES_OFF: hangpose_stage = 8;
 /// Let go, the object does not come to rest.
 pub const HANGPOSE_STAGE_NEVER_RESTS: hangpose_stage = 9;
-/// The object comes to rest, but a nudge would bring it down, or there is no room to put it there.
+/// The object comes to rest, but a nudge would bring it down, it would not come off again, or there is no room to put it
+/// there.
 pub const HANGPOSE_STAGE_TOO_LOOSE: hangpose_stage = 10;
 
 pub(crate) fn stage(stage: Stage) -> hangpose_stage {
@@ -153,7 +154,9 @@ pub(crate) fn stage_text(stage: hangpose_stage) -> &'static CStr {
         HANGPOSE_STAGE_ROTATES_OFF => c"wherever it is let go, the object rotates off",
         HANGPOSE_STAGE_SLIDES_OFF => c"wherever it is let go, the object slides off",
         HANGPOSE_STAGE_NEVER_RESTS => c"wherever it is let go, the object does not come to rest",
-        HANGPOSE_STAGE_TOO_LOOSE => c"where the object comes to rest, a nudge would bring it down",
+        HANGPOSE_STAGE_TOO_LOOSE => {
+            c"where the object comes to rest it is stuck, or a nudge would bring it down"
+        }
         _ => c"unknown stage",
     }
 }

@@ -28,7 +28,7 @@ impl Model for Supporter<'static> {
 /// Bytes behind the handle for a cloud.
 fn model_bytes(cloud: &hangpose_cloud) -> usize {
     let points = cloud.point_count as usize;
-    Supporter::bytes(&Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points })
+    Supporter::bytes(&Limits { points, ..Limits::NONE })
 }
 
 /// Analyses `cloud` in `memory`, which takes hangpose_supporter_bytes for its size, and sets `supporter` to what it made

@@ -19,13 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let supporter_file = files::read_cloud(&samples.join(format!("{supporter}.ply")))?;
         for (profile, params) in [("paper", Params::paper()), ("default", Params::default())] {
             let (mesh, cloud, monitor) = (object_file.mesh()?, supporter_file.cloud()?, Monitor::new());
-            let limits = Limits {
-                vertices: mesh.vertices().len(),
-                triangles: mesh.triangles().len(),
-                samples: params.samples,
-                voxels: params.voxels,
-                points: cloud.points().len(),
-            };
+            let limits = Limits { points: cloud.points().len(), ..Object::limits(&mesh, &params) };
             let sizes = [Object::bytes(&limits), Supporter::bytes(&limits), predict_bytes(&limits)];
             let mut memory = sizes.map(|size| vec![0; size]);
             let mebibytes = sizes.iter().sum::<usize>() as f64 / f64::from(1 << 20);

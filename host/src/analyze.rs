@@ -77,14 +77,7 @@ pub fn analyze_object<'m>(
     monitor: &Monitor,
 ) -> Result<Object<'m>, AnalysisError> {
     params.validate()?;
-    let limits = Limits {
-        vertices: mesh.vertices().len(),
-        triangles: mesh.triangles().len(),
-        samples: params.samples,
-        voxels: params.voxels,
-        points: 0,
-    };
-    memory.resize(Object::bytes(&limits), 0);
+    memory.resize(Object::bytes(&Object::limits(mesh, params)), 0);
     Object::analyze(mesh, params, memory, monitor)
 }
 
@@ -95,7 +88,7 @@ pub fn analyze_supporter<'m>(
     memory: &'m mut Vec<u8>,
     monitor: &Monitor,
 ) -> Result<Supporter<'m>, AnalysisError> {
-    let limits = Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points: cloud.points().len() };
+    let limits = Limits { points: cloud.points().len(), ..Limits::NONE };
     memory.resize(Supporter::bytes(&limits), 0);
     Supporter::analyze(cloud, params, memory, monitor)
 }
@@ -109,7 +102,7 @@ pub fn predict_poses<'p>(
     monitor: &Monitor,
 ) -> Result<Prediction<'p>, PredictError> {
     let points = supporter.points().points().len();
-    let limits = Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points };
+    let limits = Limits { points, ..Limits::NONE };
     predict(object, supporter, params, poses, &mut vec![0; predict_bytes(&limits)], monitor)
 }
 

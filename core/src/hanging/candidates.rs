@@ -107,7 +107,7 @@ pub(super) fn find(
 
 /// The pose with this rotation that holds `contact` just above `place`, if one is clear.
 fn lowest_clear(
-    (body, support): (&Body, &Support),
+    scene: (&Body, &Support),
     contact: &ObjectContact,
     place: &Place,
     rotation: UnitQuaternion<f32>,
@@ -118,12 +118,12 @@ fn lowest_clear(
         let shift = place.position + up * lift - rotation * contact.position;
         let pose = Pose::from_parts(Translation3::from(shift), rotation);
         meter.distance_queries(place.probes.len())?;
-        let depth = |probe: &Point| -body.field.distance(&pose.inverse_transform_point(probe));
+        let depth = |probe: &Point| -scene.0.field.distance(&pose.inverse_transform_point(probe));
         match place.probes.iter().map(depth).find(|depth| *depth > 0.0) {
-            // As far inside as that it stays inside when it is lifted.
+            // So far inside that it stays there when it is lifted.
             Some(depth) if depth > LIFTS[1] => return Ok(None),
             Some(_) => {}
-            None if is_clear(body, support, &pose, CLEARANCE, meter)? => return Ok(Some(pose)),
+            None if is_clear(scene, &pose, CLEARANCE, meter)? => return Ok(Some(pose)),
             None => {}
         }
     }

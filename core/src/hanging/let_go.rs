@@ -30,7 +30,7 @@ pub fn let_go(
     let body = object.body().ok_or(PredictError::NoDistanceField)?;
     let support = supporter.support();
     let points = supporter.points().points().len();
-    let limits = Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points };
+    let limits = Limits { points, ..Limits::NONE };
     let mut arena = Arena::new(memory, predict_bytes(&limits))?;
     let near = arena.slice::<Near>(points)?;
     let settings = Settings::damped(params.friction);

@@ -50,8 +50,19 @@ impl<'m> Object<'m> {
         model_bytes(model.saturating_add(larger(before_sampling, samples.saturating_add(with_samples))))
     }
 
-    /// Analyses `mesh` in `memory`, which must hold [`Object::bytes`] for its size and `params.samples`. The mesh
-    /// need not stay.
+    /// What [`analyze`](Self::analyze) needs memory for with this mesh and these params.
+    pub fn limits(mesh: &Mesh, params: &Params) -> Limits {
+        Limits {
+            vertices: mesh.vertices().len(),
+            triangles: mesh.triangles().len(),
+            samples: params.samples,
+            voxels: params.voxels,
+            points: 0,
+        }
+    }
+
+    /// Analyses `mesh` in `memory`, which must hold [`Object::bytes`] for its [`limits`](Self::limits). The mesh need not
+    /// stay.
     pub fn analyze(
         mesh: &Mesh,
         params: &Params,
@@ -59,14 +70,7 @@ impl<'m> Object<'m> {
         monitor: &Monitor,
     ) -> Result<Self, AnalysisError> {
         params.validate()?;
-        let limits = Limits {
-            vertices: mesh.vertices().len(),
-            triangles: mesh.triangles().len(),
-            samples: params.samples,
-            voxels: params.voxels,
-            points: 0,
-        };
-        let mut arena = Arena::new(memory, Self::bytes(&limits))?;
+        let mut arena = Arena::new(memory, Self::bytes(&Self::limits(mesh, params)))?;
         let mut meter = Meter::new(monitor);
 
         let mass = MassProperties::of(mesh, arena.scratch())?;
@@ -89,7 +93,6 @@ impl<'m> Object<'m> {
         }
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
 
-        let tree = PointTree::build(points, &mut scratch)?;
         let sample_mean = mean_of(points);
         let centre_of_mass = params.resolve_centre_of_mass(sample_mean, mass.volume_centroid);
         let mut counts = HangabilityCounts::default();
@@ -97,6 +100,7 @@ impl<'m> Object<'m> {
         let found;
         match params.candidates {
             Candidates::Sites => {
+                let tree = PointTree::build(points, &mut scratch)?;
                 let search =
                     Hangability { surface: &surface, points, normals, tree: &tree, centre_of_mass, params };
                 let (left, stop) = search.find(sites, &mut meter, scratch)?;

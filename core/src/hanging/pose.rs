@@ -1,8 +1,8 @@
 //! What a prediction is made of.
 
-use super::Cost;
-use crate::geometry::{Pose, Vector};
-use crate::mechanics::{Contact, MAX_CONTACTS, Margin};
+use super::{Cost, probability};
+use crate::geometry::{Point, Pose};
+use crate::mechanics::{Contact, Firmness, MAX_CONTACTS, Margin};
 
 /// A pose in which the object hangs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,16 +62,13 @@ pub struct Rest {
 }
 
 impl Rest {
-    pub(super) fn new(pose: Pose, clearance: f32, sinking: f32) -> Self {
-        Self {
-            pose,
-            sinking,
-            clearance,
-            probability: 0.0,
-            margin: Margin::default(),
-            contacts: [Contact::default(); MAX_CONTACTS],
-            contact_count: 0,
-        }
+    pub(super) fn new(pose: Pose, sinking: f32, clearance: f32, firmness: &Firmness) -> Self {
+        let Firmness { margin, contacts: bearing } = firmness;
+        let mut contacts = [Contact::default(); MAX_CONTACTS];
+        contacts[..bearing.len()].copy_from_slice(bearing);
+        let probability = probability::of(margin, clearance);
+        let contact_count = bearing.len() as u32;
+        Self { pose, sinking, clearance, probability, margin: *margin, contacts, contact_count }
     }
 
     /// Where the supporter bears the object at rest.
@@ -79,15 +76,9 @@ impl Rest {
         &self.contacts[..self.contact_count as usize]
     }
 
-    pub(super) fn set_contacts(&mut self, contacts: &[Contact]) {
-        let count = contacts.len().min(MAX_CONTACTS);
-        self.contacts[..count].copy_from_slice(&contacts[..count]);
-        self.contact_count = count as u32;
-    }
-
     /// Whether it is the same rest as another, as far as a robot cares.
-    pub(super) fn is_like(&self, other: &Self, centre: &crate::geometry::Point) -> bool {
-        let apart: Vector = self.pose * centre - other.pose * centre;
+    pub(super) fn is_like(&self, other: &Self, centre: &Point) -> bool {
+        let apart = self.pose * centre - other.pose * centre;
         apart.norm() < 0.005 && self.pose.rotation.angle_to(&other.pose.rotation) < 0.1
     }
 }

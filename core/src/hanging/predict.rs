@@ -72,7 +72,8 @@ pub enum Stage {
     SlidesOff,
     /// Let go, the object does not come to rest.
     NeverRests,
-    /// The object comes to rest, but a nudge would bring it down, or there is no room to put it there.
+    /// The object comes to rest, but a nudge would bring it down, it would not come off again, or there is no room to put it
+    /// there.
     TooLoose,
 }
 
@@ -94,7 +95,7 @@ impl core::fmt::Display for Stage {
             Self::RotatesOff => "wherever it is let go, the object rotates off",
             Self::SlidesOff => "wherever it is let go, the object slides off",
             Self::NeverRests => "wherever it is let go, the object does not come to rest",
-            Self::TooLoose => "where the object comes to rest, a nudge would bring it down",
+            Self::TooLoose => "where the object comes to rest it is stuck, or a nudge would bring it down",
         })
     }
 }
@@ -162,7 +163,7 @@ pub fn predict<'p>(
 ) -> Result<Prediction<'p>, PredictError> {
     params.validate()?;
     let points = supporter.points().points().len();
-    let limits = Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points };
+    let limits = Limits { points, ..Limits::NONE };
     let mut arena = Arena::new(memory, predict_bytes(&limits))?;
     let mut meter = Meter::new(monitor);
     let mut counts = Counts {
@@ -210,7 +211,7 @@ pub fn predict<'p>(
     meter.progress(1.0);
     let stopped = object.stopped().or(supporter.stopped()).or(stop);
     let poses = best.into_slice();
-    let rejection = if stopped.is_some() || !poses.is_empty() { None } else { empty_stage(&counts, params) };
+    let rejection = if stopped.is_some() { None } else { empty_stage(&counts, params) };
     Ok(Prediction {
         poses,
         rejection: rejection.map(|stage| Rejection { stage, counts }),
@@ -241,15 +242,16 @@ fn empty_stage(counts: &Counts, params: &Params) -> Option<Stage> {
         Candidates::Contacts => &by_contacts[..],
     };
     let empty = steps.iter().find(|(left, _)| *left == 0).map(|(_, stage)| *stage);
-    empty.or_else(|| {
-        // Something was let go and nothing stayed: what befell most.
-        let fates = [
-            (settling.at_rest, Stage::TooLoose),
-            (settling.rotated_off, Stage::RotatesOff),
-            (settling.slid_off, Stage::SlidesOff),
-            (settling.moving, Stage::NeverRests),
-        ];
-        let befell_most = fates.iter().rev().max_by_key(|(count, _)| *count).filter(|(count, _)| *count > 0);
-        Some(befell_most.map_or(Stage::AllCollide, |(_, stage)| *stage))
-    })
+    if empty.is_some() || !params.settle || settling.probable > 0 {
+        return empty;
+    }
+    // Nothing stayed of what was let go: what befell most.
+    let fates = [
+        (settling.at_rest, Stage::TooLoose),
+        (settling.rotated_off, Stage::RotatesOff),
+        (settling.slid_off, Stage::SlidesOff),
+        (settling.moving, Stage::NeverRests),
+    ];
+    let befell_most = fates.iter().rev().max_by_key(|(count, _)| *count).filter(|(count, _)| *count > 0);
+    Some(befell_most.map_or(Stage::AllCollide, |(_, stage)| *stage))
 }

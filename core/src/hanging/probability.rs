@@ -1,6 +1,6 @@
 //! How likely it is that a pose hangs: `docs/PROBABILITY.md` says where the constants come from.
 
-use super::pose::Rest;
+use crate::mechanics::Margin;
 
 /// A logistic regression of success, as the judge in `host-tests` defines it, on what is known of a rest: a constant,
 const CONSTANT: f32 = -5.12;
@@ -16,11 +16,11 @@ const MOST_CLEARANCE: f32 = 0.001;
 /// Poses that are at least this probable need no better ones beside them.
 pub(super) const FIRM: f32 = 0.95;
 
-/// The probability that an object hangs that comes to rest so.
-pub(super) fn of(rest: &Rest) -> f32 {
+/// The probability that an object hangs that rests with this margin and was released with this clearance, metres.
+pub(super) fn of(margin: &Margin, clearance: f32) -> f32 {
     let score = CONSTANT
-        + PER_TILT * rest.margin.least_tilt()
-        + PER_RATIO * rest.margin.escape_ratio.min(MOST_RATIO)
-        + PER_CLEARANCE * rest.clearance.min(MOST_CLEARANCE);
+        + PER_TILT * margin.least_tilt()
+        + PER_RATIO * margin.escape_ratio.min(MOST_RATIO)
+        + PER_CLEARANCE * clearance.min(MOST_CLEARANCE);
     1.0 / (1.0 + libm::expf(-score))
 }

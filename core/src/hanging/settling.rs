@@ -47,18 +47,48 @@ pub(super) struct Settling<'a> {
     pub(super) counts: SettlingCounts,
 }
 
+/// Tilts below this, radians, are not worth the time for the others.
+const WORTHLESS_TILT: f32 = 0.15;
+/// A release that comes closer to the supporter than this, metres, is as good as none: clouds are no more exact.
+const LEAST_GAP: f32 = 0.0001;
+
 /// What it takes off the promise of other candidates with the same contact that one was tried: of the object's,
 const TRIED_OBJECT: f32 = 0.5;
 /// and of the supporter's.
 const TRIED_SUPPORT: f32 = 0.3;
 /// A rest takes off this share of it.
 const REST_SHARE: f32 = 0.6;
-/// Tilts below this, radians, are not worth the time for the others.
-const WORTHLESS_TILT: f32 = 0.15;
+
+/// The candidates, the most promising first: less so with each that was tried at the same contacts.
+struct Queue<'a> {
+    candidates: &'a mut [Candidate],
+    /// What is taken off at each contact of the object and of the supporter.
+    tried: [&'a mut [f32]; 2],
+}
+
+impl Queue<'_> {
+    /// Takes the most promising candidate; of equal ones the last.
+    fn take(&mut self) -> Option<Candidate> {
+        let value = |c: &Candidate| {
+            c.promise - self.tried[0][c.contacts[0] as usize] - self.tried[1][c.contacts[1] as usize]
+        };
+        let open = self.candidates.iter_mut().filter(|candidate| candidate.is_tried == 0);
+        let best = open.max_by(|a, b| value(a).total_cmp(&value(b)))?;
+        best.is_tried = 1;
+        Some(*best)
+    }
+
+    /// Takes a share off what others at the same contacts promise.
+    fn discount(&mut self, candidate: &Candidate, share: f32) {
+        let [object, support] = candidate.contacts;
+        self.tried[0][object as usize] += share * TRIED_OBJECT;
+        self.tried[1][support as usize] += share * TRIED_SUPPORT;
+    }
+}
 
 impl Settling<'_> {
-    /// Finds candidates and, if gravity is to act, lets the most promising go until enough stay; offers to `poses` what stays,
-    /// or all of them.
+    /// Finds candidates and lets the most promising go until enough stay firmly, or offers them as they are if gravity is not to
+    /// act.
     pub(super) fn search(
         &mut self,
         (contacts, supports): (&[ObjectContact], &[SupportContact]),
@@ -70,32 +100,29 @@ impl Settling<'_> {
         let scene = (self.body, self.support);
         let [made, clear] = candidates::find(scene, contacts, supports, self.params.up(), slots, meter)?;
         (self.counts.candidates, self.counts.clear) = (made, clear);
-        let slots = &mut slots[..clear];
-        let [tried_object, tried_support] = tried;
-        let attempts = if self.params.settle { self.params.settle_attempts } else { slots.len() };
+        let mut queue = Queue { candidates: &mut slots[..clear], tried };
+        if !self.params.settle {
+            while !poses.is_full()
+                && let Some(candidate) = queue.take()
+            {
+                // They come in order.
+                poses.offer(HangingPose { pose: candidate.pose(), ..HangingPose::default() }, |_, _| false);
+                queue.discount(&candidate, 1.0);
+            }
+            return Ok(());
+        }
+        let attempts = self.params.settle_attempts;
         for attempt in 0..attempts {
             meter.progress(attempt as f32 / attempts as f32);
-            let value = |c: &Candidate| {
-                c.promise - tried_object[c.contacts[0] as usize] - tried_support[c.contacts[1] as usize]
-            };
-            let open = slots.iter_mut().filter(|candidate| candidate.is_tried == 0);
-            let Some(best) = open.max_by(|a, b| value(a).total_cmp(&value(b))) else { break };
-            best.is_tried = 1;
-            let candidate = *best;
-            let mut share = 1.0;
-            if !self.params.settle {
-                // In the order of what they promise.
-                poses.offer(HangingPose { pose: candidate.pose(), ..HangingPose::default() }, |_, _| false);
-            } else if let Some(pose) = self.release(&candidate.pose(), meter)? {
-                share = REST_SHARE;
-                self.offer(pose, poses);
+            let Some(candidate) = queue.take() else { break };
+            match self.release(&candidate.pose(), meter)? {
+                Some(pose) => {
+                    self.offer(pose, poses);
+                    queue.discount(&candidate, REST_SHARE);
+                }
+                None => queue.discount(&candidate, 1.0),
             }
-            tried_object[candidate.contacts[0] as usize] += share * TRIED_OBJECT;
-            tried_support[candidate.contacts[1] as usize] += share * TRIED_SUPPORT;
-            let counts = &self.counts;
-            let is_enough =
-                if self.params.settle { counts.firm >= self.params.firm_enough } else { poses.is_full() };
-            if is_enough {
+            if self.counts.firm >= self.params.firm_enough {
                 break;
             }
         }
@@ -139,10 +166,10 @@ impl Settling<'_> {
     }
 
     /// What becomes of the object at `release`; `None` if it does not stay.
-    pub(super) fn release(&mut self, release: &Pose, meter: &mut Meter) -> Result<Option<HangingPose>, Stop> {
+    fn release(&mut self, release: &Pose, meter: &mut Meter) -> Result<Option<HangingPose>, Stop> {
         let scene = (self.body, self.support);
         // What is finer than the field's voxels shows only here.
-        if !is_off_surface(self.body, self.support, release, candidates::CLEARANCE, meter)? {
+        if !is_off_surface(scene, release, candidates::CLEARANCE, meter)? {
             return Ok(None);
         }
         self.counts.released += 1;
@@ -160,7 +187,7 @@ impl Settling<'_> {
         }
         let clearance = self.params.clearance;
         let (pose, gap) = release_pose(scene, &settled.pose, clearance, &up, self.near, meter)?;
-        if gap < LEAST_GAP || !is_off_surface(self.body, self.support, &pose, LEAST_GAP, meter)? {
+        if gap < LEAST_GAP || !is_off_surface(scene, &pose, LEAST_GAP, meter)? {
             return Ok(None);
         }
         if !comes_free(scene, &settled.pose, &-up, Settings::damped(friction), self.near, meter)? {
@@ -170,19 +197,13 @@ impl Settling<'_> {
         let centre = &self.body.centre;
         let sinking = up.dot(&(pose * centre - settled.pose * centre));
         let firm = firmness(scene, &settled.pose, &-up, friction, WORTHLESS_TILT, self.near, meter)?;
-        let mut rest = Rest::new(settled.pose, gap, sinking);
-        rest.margin = firm.margin;
-        rest.set_contacts(&firm.contacts);
-        rest.probability = probability::of(&rest);
+        let rest = Rest::new(settled.pose, sinking, gap, &firm);
         Ok(Some(HangingPose { pose, rest: Some(rest), matched: None }))
     }
 }
 
-/// A release that comes closer to the supporter than this, metres, is as good as none: clouds are no more exact.
-const LEAST_GAP: f32 = 0.0001;
-
 /// The order of the ranking.
-pub(super) fn is_more_probable(a: &HangingPose, b: &HangingPose) -> bool {
+fn is_more_probable(a: &HangingPose, b: &HangingPose) -> bool {
     let probability = |pose: &HangingPose| pose.rest.map_or(0.0, |rest| rest.probability);
     probability(a) > probability(b)
 }

@@ -22,7 +22,7 @@ pub struct Supporter<'m> {
     tree: PointTree<'m>,
     point_normals: &'m [Vector],
     disc: f32,
-    is_representative: &'m [u8],
+    disc_shares: &'m [u8],
     contacts: &'m [SupportContact],
     sites: &'m [SupportSite],
     normals: NormalCounts,
@@ -68,7 +68,7 @@ impl<'m> Supporter<'m> {
     ) -> Result<Self, AnalysisError> {
         params.validate()?;
         let points = cloud.points();
-        let limits = Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points: points.len() };
+        let limits = Limits { points: points.len(), ..Limits::NONE };
         let mut arena = Arena::new(memory, Self::bytes(&limits))?;
         let mut meter = Meter::new(monitor);
 
@@ -76,7 +76,7 @@ impl<'m> Supporter<'m> {
         let sites = arena.slice::<SupportSite>(supportability::MAX_SITES)?;
 
         let in_tree_order = arena.slice::<Vector>(points.len())?;
-        let is_representative = arena.slice::<u8>(points.len())?;
+        let disc_shares = arena.slice::<u8>(points.len())?;
         let contacts = arena.slice::<SupportContact>(support_contact::MAX_CONTACTS)?;
         let mut scratch = arena.scratch();
         let mut normals = NormalCounts::default();
@@ -100,7 +100,7 @@ impl<'m> Supporter<'m> {
         let found;
         if params.settle || params.candidates == Candidates::Contacts {
             let covered = scratch.scratch().slice::<u8>(points.len())?;
-            disc = choose_representatives(&tree, in_tree_order, is_representative, covered);
+            disc = choose_representatives(&tree, in_tree_order, disc_shares, covered);
         }
         match params.candidates {
             Candidates::Sites => {
@@ -124,18 +124,7 @@ impl<'m> Supporter<'m> {
         let (sites, contacts) = (&sites[..site_count], &contacts[..contact_count]);
         let point_normals = in_tree_order;
         let work = meter.work;
-        Ok(Self {
-            tree,
-            point_normals,
-            disc,
-            is_representative,
-            contacts,
-            sites,
-            normals,
-            counts,
-            work,
-            stopped,
-        })
+        Ok(Self { tree, point_normals, disc, disc_shares, contacts, sites, normals, counts, work, stopped })
     }
 
     /// The supporter as mechanics sees it.
@@ -143,7 +132,7 @@ impl<'m> Supporter<'m> {
         Support {
             tree: &self.tree,
             normals: self.point_normals,
-            is_representative: self.is_representative,
+            disc_shares: self.disc_shares,
             disc: self.disc,
         }
     }

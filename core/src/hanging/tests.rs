@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::geometry::{Cloud, Pose};
+use crate::mechanics::Fate;
 use crate::memory::{Limits, OutOfMemory};
 use crate::test_shapes::{self, Shape};
 use crate::{Candidates, CentreOfMass, Monitor, Params, Stop};
@@ -95,7 +96,7 @@ fn predict<'p>(
     monitor: &Monitor,
 ) -> Result<Prediction<'p>, PredictError> {
     let points = supporter.points().points().len();
-    let limits = Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points };
+    let limits = Limits { points, ..Limits::NONE };
     super::predict(object, supporter, params, poses, &mut vec![0; predict_bytes(&limits)], monitor)
 }
 
@@ -590,4 +591,39 @@ fn the_product_hangs_in_every_direction() {
         let scene = Scene::key_on_peg().turned(degrees);
         assert_hangs(&scene.predict(&product()).0, &scene, &product());
     }
+}
+
+#[test]
+fn any_pose_can_be_let_go() {
+    let (scene, params) = (Scene::key_on_peg(), product());
+    scene.analyse(&params, &Monitor::new(), |object, supporter| {
+        let mut poses = [HangingPose::default(); 1];
+        let found = predict(object, supporter, &params, &mut poses, &Monitor::new()).unwrap();
+        let (release, rest) = (found.poses[0].pose, found.poses[0].rest.unwrap().pose);
+        let mut memory = vec![0; predict_bytes(&scene.limits(&params))];
+        let mut fate = |pose: &Pose| {
+            let_go(object, supporter, pose, &params, &mut memory, &Monitor::new()).unwrap().unwrap()
+        };
+        // What was predicted to rest rests, and there.
+        let stays = fate(&release);
+        assert_eq!(stays.fate, Fate::Rests);
+        assert!(gap(&stays.pose, &rest, [Point::origin(), Point::new(0.0, 0.1, 0.0)]) < 0.005, "{stays:?}");
+        // Beside the supporter it falls without turning.
+        let aside = Translation3::new(0.0, 0.5, 0.0) * release;
+        let falls = fate(&aside);
+        assert_eq!(falls.fate, Fate::SlidesOff);
+        assert!(falls.pose.translation.z < aside.translation.z - 0.05, "{falls:?}");
+    });
+}
+
+#[test]
+fn no_room_for_poses_is_no_rejection() {
+    let scene = Scene::ring_on_peg(0.0);
+    scene.analyse(&product(), &Monitor::new(), |object, supporter| {
+        for settle in [true, false] {
+            let params = Params { settle, ..product() };
+            let found = predict(object, supporter, &params, &mut [], &Monitor::new()).unwrap();
+            assert_eq!((found.poses.len(), found.rejection), (0, None));
+        }
+    });
 }

@@ -90,7 +90,7 @@ impl<'s> Neighbourhood<'s> {
             if body.is_beyond(&centre, limit) || body.field.distance(&centre) > limit {
                 return false;
             }
-            for index in node.items().into_iter().flatten().filter(|&i| support.is_representative[i] > 0) {
+            for index in node.items().into_iter().flatten().filter(|&i| support.disc_shares[i] > 0) {
                 let radius = self.odometer.radius(state, &support.tree.points()[index]) + surroundings;
                 self.near[self.count] = Near { index: index as u32, radius, sleeps_until: -1.0 };
                 self.count += 1;
@@ -178,6 +178,7 @@ impl<'s> Neighbourhood<'s> {
 const CARRIES: u8 = 1;
 /// or when any point of the body may have moved farther than this, metres.
 const CARRY: f32 = 0.003;
+
 /// The point of the disc around `at` that is nearest to, or deepest in, the body, with the gap and gradient there.
 fn nearest_on_disc(
     body: &Body,

@@ -4,7 +4,7 @@ use super::contact::Near;
 use super::motion::{Motion, Settings, TIME_STEP};
 use super::settle::most_sinking;
 use super::{Body, GRAVITY, Support};
-use crate::geometry::{Point, Pose, Vector, any_perpendicular, rotate_about};
+use crate::geometry::{Point, Pose, Vector, rotate_about};
 use crate::monitor::{Meter, Stop};
 
 /// Directions in which gravity is tilted.
@@ -18,7 +18,8 @@ pub const MAX_CONTACTS: usize = 8;
 pub struct Margin {
     /// How far gravity may tilt, radians, towards each of eight horizontal directions: the first is the supporter's x axis
     /// (or its y axis, where gravity is along x, made perpendicular to gravity), the others follow counter-clockwise seen
-    /// from above. At most [`Margin::MOST_TILT`], where the search ends.
+    /// from above. At most [`Margin::MOST_TILT`], where the search ends;
+    /// zero for directions that were not tried any more, because another is hopeless.
     pub tilts: [f32; DIRECTIONS],
     /// The least rise of the centre of mass, metres, over the ways of escape that were found: what an escape costs over `m g`
     /// (escape energy: Dong and Pokorny, arXiv 2309.01224). An upper bound of the least that any escape costs, and the highest
@@ -134,7 +135,7 @@ pub(crate) fn firmness(
 fn horizontal(down: &Vector) -> Vector {
     let axis = if down.x.abs() < 0.9 { Vector::x() } else { Vector::y() };
     let level = axis - down * axis.dot(down);
-    crate::geometry::unit_or(level, any_perpendicular(*down))
+    level.normalize()
 }
 
 /// How far gravity tilted towards `across` before the body left, radians, how high its centre of mass rose until then, and

@@ -28,8 +28,9 @@ impl Settings {
 /// Seconds a step. Contacts bear because of the gap that they may close in it, so that none is missed.
 pub(crate) const TIME_STEP: f32 = 0.004;
 
-/// Contacts are kept while their gap is below this, metres, so that what rests does not lose and regain them.
-const NEAR_CONTACT: f32 = 0.0003;
+/// Contacts are kept while their gap is below this, metres, so that what rests does not lose and regain them; and gravity may close
+/// them by the rest in three steps, one more than they are used for.
+const NEAR_CONTACT: f32 = 0.0003 + 4.5 * TIME_STEP * TIME_STEP * GRAVITY;
 
 pub(crate) struct Motion<'a, 's> {
     pub(crate) state: State,
@@ -68,9 +69,8 @@ impl<'a, 's> Motion<'a, 's> {
     pub(crate) fn step(&mut self, gravity: &Vector, meter: &mut Meter) -> Result<(), Stop> {
         const DT: f32 = TIME_STEP;
         let (body, state) = (self.body, &mut self.state);
-        let margin = NEAR_CONTACT + 4.5 * DT * DT * GRAVITY;
         let scene = (body, self.support);
-        self.neighbourhood.update(&mut self.contacts, scene, state, (margin, DT), meter)?;
+        self.neighbourhood.update(&mut self.contacts, scene, state, (NEAR_CONTACT, DT), meter)?;
         state.velocity += gravity * DT;
         let inverse_inertia = body.inverse_inertia_in(state);
         self.impulses = solver::solve(

@@ -8,8 +8,8 @@ pub(crate) struct Support<'a> {
     pub(crate) tree: &'a PointTree<'a>,
     /// Unit normals in tree order.
     pub(crate) normals: &'a [Vector],
-    /// In tree order: not zero for the points that contact is looked for at, and how large their discs are, in 255ths of `disc`.
-    pub(crate) is_representative: &'a [u8],
+    /// In tree order: how large the disc is that a point stands for, in 255ths of `disc`; zero for points that others stand for.
+    pub(crate) disc_shares: &'a [u8],
     /// Radius of the largest disc that such a point stands for, metres.
     pub(crate) disc: f32,
 }
@@ -17,7 +17,7 @@ pub(crate) struct Support<'a> {
 impl Support<'_> {
     /// Radius of the disc that a point stands for, metres.
     pub(crate) fn disc_at(&self, index: usize) -> f32 {
-        self.disc * f32::from(self.is_representative[index]) / 255.0
+        self.disc * f32::from(self.disc_shares[index]) / 255.0
     }
 }
 
@@ -30,19 +30,19 @@ const SAME_WAY: f32 = 0.9;
 /// thicken what is round.
 const DISC: f32 = 0.8;
 
-/// Fills `is_representative` so that every other point has one near it that looks the same way, and returns the radius
-/// of the largest disc that one stands for. `is_covered` is working memory of the same length.
+/// Chooses points so that every other has one near it that looks the same way, fills in how large their discs are, and returns the
+/// radius of the largest. `is_covered` is working memory of the same length.
 pub(crate) fn choose_representatives(
     tree: &PointTree,
     normals: &[Vector],
-    is_representative: &mut [u8],
+    disc_shares: &mut [u8],
     is_covered: &mut [u8],
 ) -> f32 {
-    for index in 0..is_representative.len() {
+    for index in 0..disc_shares.len() {
         if is_covered[index] > 0 {
             continue;
         }
-        is_representative[index] = 1;
+        disc_shares[index] = 1;
         tree.for_each_within(&tree.points()[index], REPRESENTATIVES_APART, |neighbour| {
             let other = neighbour.index as usize;
             if normals[other].dot(&normals[index]) > SAME_WAY {
@@ -52,7 +52,7 @@ pub(crate) fn choose_representatives(
     }
     let spacing = spacing(tree);
     let disc = DISC * spacing.max(REPRESENTATIVES_APART);
-    for (index, representative) in is_representative.iter_mut().enumerate().filter(|(_, r)| **r > 0) {
+    for (index, representative) in disc_shares.iter_mut().enumerate().filter(|(_, r)| **r > 0) {
         let share = covered(tree, normals, index, disc + spacing) / disc;
         *representative = (share * 255.0).clamp(1.0, 255.0) as u8;
     }

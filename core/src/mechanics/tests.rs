@@ -63,7 +63,7 @@ impl Scene {
             reach,
             extent: surface.aabb().extents().max(),
         };
-        let support = Support { tree: &tree, normals: &normals, is_representative: &chosen, disc };
+        let support = Support { tree: &tree, normals: &normals, disc_shares: &chosen, disc };
         check(&mut Lab { body, support, near: vec![Near::default(); count] })
     }
 }
@@ -125,7 +125,7 @@ impl Lab<'_> {
 
     fn is_clear(&self, pose: &Pose, clearance: f32) -> bool {
         let monitor = Monitor::new();
-        is_clear(&self.body, &self.support, pose, clearance, &mut Meter::new(&monitor)).unwrap()
+        is_clear((&self.body, &self.support), pose, clearance, &mut Meter::new(&monitor)).unwrap()
     }
 }
 

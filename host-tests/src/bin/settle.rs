@@ -67,20 +67,19 @@ fn main() -> Result<()> {
 fn judge(case: &Case, count: usize) -> Vec<Said> {
     let cloud_of = Mesh::new(&case.supporter.vertices, &case.supporter.triangles).expect("shapes are valid");
     let cloud = sample_supporter(&cloud_of, 10_000, case.seed);
-    let params = Params { settle: false, ..Params::default() };
+    let params = Params::default();
     let mesh = Mesh::new(&case.object.vertices, &case.object.triangles).expect("shapes are valid");
     let (mut object_memory, mut supporter_memory) = (Vec::new(), Vec::new());
     let monitor = Monitor::new();
     let object = analyze_object(&mesh, &params, &mut object_memory, &monitor).expect("memory is enough");
     let cloud = cloud.cloud().expect("samples are valid");
-    let params = Params { settle: true, ..params };
     let supporter =
         analyze_supporter(&cloud, &params, &mut supporter_memory, &monitor).expect("memory is enough");
     let mut poses = vec![HangingPose::default(); 1000];
     let candidates = Params { settle: false, ..params.clone() };
     let found =
         predict_poses(&object, &supporter, &candidates, &mut poses, &monitor).expect("params are valid");
-    let limits = Limits { vertices: 0, triangles: 0, samples: 0, voxels: 0, points: cloud.points().len() };
+    let limits = Limits { points: cloud.points().len(), ..Limits::NONE };
     let mut memory = vec![0; predict_bytes(&limits)];
     let mut random = Random::named(&case.name, 1);
     let scene = Scene { tilt: false, ..Scene::filled(&case.object, &case.supporter, &case.filling) };

@@ -47,13 +47,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     let mut seconds = Seconds { read: start.elapsed().as_secs_f64(), ..Seconds::default() };
 
     let mesh = &mesh.mesh()?;
-    let limits = Limits {
-        vertices: mesh.vertices().len(),
-        triangles: mesh.triangles().len(),
-        samples: params.samples,
-        voxels: params.voxels,
-        points: cloud.points().len(),
-    };
+    let limits = Limits { points: cloud.points().len(), ..Object::limits(mesh, params) };
     let memory_bytes = MemoryBytes {
         object: Object::bytes(&limits),
         supporter: Supporter::bytes(&limits),

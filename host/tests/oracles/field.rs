@@ -4,7 +4,6 @@ use crate::random::Random;
 use crate::truth::double;
 use hangpose_core::geometry::{DistanceField, Point, Surface};
 use hangpose_core::hanging::Object;
-use hangpose_core::memory::Limits;
 use hangpose_core::{Monitor, Params};
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
@@ -63,14 +62,7 @@ fn the_field_of_the_samples_is_their_distance() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples").join(name);
         let file = hangpose::files::read_mesh(&path).unwrap();
         let (mesh, params) = (file.mesh().unwrap(), Params::default());
-        let limits = Limits {
-            vertices: mesh.vertices().len(),
-            triangles: mesh.triangles().len(),
-            samples: params.samples,
-            voxels: params.voxels,
-            points: 0,
-        };
-        let mut memory = vec![0; Object::bytes(&limits)];
+        let mut memory = vec![0; Object::bytes(&Object::limits(&mesh, &params))];
         let object = Object::analyze(&mesh, &params, &mut memory, &Monitor::new()).unwrap();
         let field = object.distance_field().unwrap();
         let aabb = mesh.aabb();
