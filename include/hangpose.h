@@ -42,14 +42,14 @@
   (HANGPOSE_PREDICT_BYTES_AT_LEAST + HANGPOSE_PREDICT_BYTES_EACH_POINT * (size_t)(points) +         \
    HANGPOSE_PREDICT_BYTES_EACH_POSE * (size_t)(poses))
 // What they are made of: the queries grow by no more than this for each.
-#define HANGPOSE_OBJECT_BYTES_AT_LEAST 29696
+#define HANGPOSE_OBJECT_BYTES_AT_LEAST 30720
 #define HANGPOSE_OBJECT_BYTES_EACH_VERTEX 8
 #define HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE 180
 #define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 312
 #define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 17
 #define HANGPOSE_SUPPORTER_BYTES_AT_LEAST 17408
 #define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 181
-#define HANGPOSE_PREDICT_BYTES_AT_LEAST 36864
+#define HANGPOSE_PREDICT_BYTES_AT_LEAST 43008
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 12
 #define HANGPOSE_PREDICT_BYTES_EACH_POSE 376
 
@@ -328,6 +328,9 @@ typedef struct hangpose_object_contact {
   float capture;
   // How far it is to the surface opposite, metres; infinite where there is none.
   float room;
+  // How far such a bar gets along its direction, on the side where it gets farther, metres; infinite where nothing stops it,
+  // as in a hole.
+  float passage;
 } hangpose_object_contact;
 
 // What the analysis of a supporter found.

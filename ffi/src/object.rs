@@ -228,6 +228,9 @@ pub struct hangpose_object_contact {
     pub capture: f32,
     /// How far it is to the surface opposite, metres; infinite where there is none.
     pub room: f32,
+    /// How far such a bar gets along its direction, on the side where it gets farther, metres; infinite where nothing stops it,
+    /// as in a hole.
+    pub passage: f32,
 }
 
 // SAFETY: `repr(C)` over numbers, `struct_size` first.
@@ -252,6 +255,7 @@ pub unsafe extern "C" fn hangpose_object_get_contact(
             bar_direction: found.bar_direction.into(),
             capture: found.capture,
             room: found.room,
+            passage: found.passage,
         })
     };
     // SAFETY: the caller vouches for the pointers.

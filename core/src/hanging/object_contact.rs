@@ -20,6 +20,9 @@ pub struct ObjectContact {
     pub capture: f32,
     /// How far it is to the surface opposite, metres; infinite where there is none.
     pub room: f32,
+    /// How far such a bar gets along its direction, on the side where it gets farther, metres; infinite where nothing stops it, as
+    /// in a hole.
+    pub passage: f32,
 }
 
 /// Contacts kept at most. They are samples of the surface that are apart; those that come first stay.
@@ -35,6 +38,8 @@ const LEAST_COSINE: f32 = 0.3;
 const DIRECTIONS: usize = 6;
 /// How far below the contact it is looked to the sides, metres.
 const LEVELS: [f32; 6] = [0.0015, 0.003, 0.006, 0.012, 0.024, 0.048];
+/// How far below the contact it is looked along the bar, metres: about where a bar's middle comes to be.
+const PASSAGE_LEVEL: f32 = 0.004;
 /// Rays start this far off the surface, metres, so that they do not hit where they come from.
 const LIFT_OFF: f32 = 1e-4;
 
@@ -48,8 +53,8 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Fills `slots` with contacts, those that catch best first, and returns how many; when the work limit is reached, with what
-    /// was found until then.
+    /// Fills `slots` with contacts, those that catch best first, and of these the narrow ones, which hold more firmly, and returns how
+    /// many; when the work limit is reached, with what was found until then.
     pub(super) fn find(
         &self,
         slots: &mut [ObjectContact],
@@ -87,7 +92,7 @@ impl Search<'_> {
                 let (a, b) = (place(a), place(b));
                 a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
             };
-            b.capture.total_cmp(&a.capture).then(b.room.total_cmp(&a.room)).then_with(by_place)
+            b.capture.total_cmp(&a.capture).then(a.room.total_cmp(&b.room)).then_with(by_place)
         });
         (count, result)
     }
@@ -113,6 +118,10 @@ impl Search<'_> {
                 (bar_direction, capture) = (along, caught);
             }
         }
-        Ok(ObjectContact { position: point, normal, bar_direction, capture, room })
+        let from = start + down * PASSAGE_LEVEL.min(0.5 * room);
+        meter.rays(2)?;
+        let ways = [bar_direction, -bar_direction].map(|way| self.surface.closest_hit(&from, &way));
+        let passage = ways.iter().map(|hit| hit.unwrap_or(f32::INFINITY)).fold(0.0, f32::max);
+        Ok(ObjectContact { position: point, normal, bar_direction, capture, room, passage })
     }
 }

@@ -1,10 +1,9 @@
 //! From two models to ranked poses, or the reason why there are none.
 
-use super::candidates::{self, Candidate};
+use super::candidates::CandidateSearch;
 use super::matching::{MatchingCounts, match_sites};
 use super::settling::{Settling, SettlingCounts};
 use super::{HangabilityCounts, HangingPose, Object, SupportabilityCounts, Supporter};
-use super::{object_contact, support_contact};
 use crate::best::Best;
 use crate::mechanics::Near;
 use crate::memory::{Arena, Limits, OutOfMemory, array_bytes, model_bytes};
@@ -139,11 +138,8 @@ impl core::error::Error for PredictError {}
 
 /// Bytes of working memory for [`predict`], for a supporter within `limits`.
 pub const fn predict_bytes(limits: &Limits) -> usize {
-    let candidates = array_bytes::<Candidate>(candidates::MAX_CANDIDATES);
-    let tried = array_bytes::<f32>(object_contact::MAX_CONTACTS)
-        .saturating_add(array_bytes::<f32>(support_contact::MAX_CONTACTS));
     let near = array_bytes::<Near>(limits.points);
-    model_bytes(candidates.saturating_add(tried).saturating_add(near))
+    model_bytes(CandidateSearch::bytes().saturating_add(near))
 }
 
 /// Finds poses in which the object hangs and writes the best to `poses`, best first, as many as it holds.
@@ -196,13 +192,15 @@ pub fn predict<'p>(
                 result
             }
             Candidates::Contacts => {
-                let slots = arena.slice::<Candidate>(candidates::MAX_CANDIDATES)?;
-                let tried = [
-                    arena.slice::<f32>(object_contact::MAX_CONTACTS)?,
-                    arena.slice::<f32>(support_contact::MAX_CONTACTS)?,
-                ];
-                let places = (object.contacts(), supporter.contacts());
-                settling.search(places, slots, tried, &mut best, &mut meter)
+                let scene = (body, &support);
+                let mut candidates = CandidateSearch::new(
+                    scene,
+                    object.contacts(),
+                    supporter.contacts(),
+                    params.up(),
+                    &mut arena,
+                )?;
+                settling.search(&mut candidates, &mut best, &mut meter)
             }
         };
         stop = stop.or(result.err());

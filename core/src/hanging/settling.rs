@@ -1,8 +1,8 @@
 //! Which candidates come to rest, and how firmly.
 
-use super::candidates::{self, Candidate};
+use super::candidates::{self, CandidateSearch};
 use super::pose::Rest;
-use super::{HangingPose, ObjectContact, SupportContact, probability};
+use super::{HangingPose, probability};
 use crate::best::Best;
 use crate::geometry::Pose;
 use crate::mechanics::{
@@ -15,9 +15,9 @@ use crate::params::Params;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SettlingCounts {
-    /// Poses that lay a contact of the object on one of the supporter.
+    /// Poses that were made: that lay a contact of the object on one of the supporter.
     pub candidates: usize,
-    /// Those that are clear of the supporter.
+    /// Those that are clear of the supporter, or could be pushed off it.
     pub clear: usize,
     /// Those that were let go.
     pub released: usize,
@@ -52,75 +52,49 @@ const WORTHLESS_TILT: f32 = 0.15;
 /// A release that comes closer to the supporter than this, metres, is as good as none: clouds are no more exact.
 const LEAST_GAP: f32 = 0.0001;
 
-/// What it takes off the promise of other candidates with the same contact that one was tried: of the object's,
-const TRIED_OBJECT: f32 = 0.5;
-/// and of the supporter's.
-const TRIED_SUPPORT: f32 = 0.3;
-/// A rest takes off this share of it.
+/// What was tried promises less; a rest takes off this share of it.
 const REST_SHARE: f32 = 0.6;
 
-/// The candidates, the most promising first: less so with each that was tried at the same contacts.
-struct Queue<'a> {
-    candidates: &'a mut [Candidate],
-    /// What is taken off at each contact of the object and of the supporter.
-    tried: [&'a mut [f32]; 2],
-}
-
-impl Queue<'_> {
-    /// Takes the most promising candidate; of equal ones the last.
-    fn take(&mut self) -> Option<Candidate> {
-        let value = |c: &Candidate| {
-            c.promise - self.tried[0][c.contacts[0] as usize] - self.tried[1][c.contacts[1] as usize]
-        };
-        let open = self.candidates.iter_mut().filter(|candidate| candidate.is_tried == 0);
-        let best = open.max_by(|a, b| value(a).total_cmp(&value(b)))?;
-        best.is_tried = 1;
-        Some(*best)
-    }
-
-    /// Takes a share off what others at the same contacts promise.
-    fn discount(&mut self, candidate: &Candidate, share: f32) {
-        let [object, support] = candidate.contacts;
-        self.tried[0][object as usize] += share * TRIED_OBJECT;
-        self.tried[1][support as usize] += share * TRIED_SUPPORT;
-    }
-}
-
 impl Settling<'_> {
-    /// Finds candidates and lets the most promising go until enough stay firmly, or offers them as they are if gravity is not to
-    /// act.
+    /// Lets the most promising candidates go until enough stay firmly, or offers them as they are if gravity is not to act.
     pub(super) fn search(
         &mut self,
-        (contacts, supports): (&[ObjectContact], &[SupportContact]),
-        slots: &mut [Candidate],
-        tried: [&mut [f32]; 2],
+        candidates: &mut CandidateSearch,
         poses: &mut Best<HangingPose>,
         meter: &mut Meter,
     ) -> Result<(), Stop> {
-        let scene = (self.body, self.support);
-        let [made, clear] = candidates::find(scene, contacts, supports, self.params.up(), slots, meter)?;
-        (self.counts.candidates, self.counts.clear) = (made, clear);
-        let mut queue = Queue { candidates: &mut slots[..clear], tried };
+        let result = self.search_among(candidates, poses, meter);
+        (self.counts.candidates, self.counts.clear) = (candidates.made, candidates.clear);
+        result
+    }
+
+    fn search_among(
+        &mut self,
+        candidates: &mut CandidateSearch,
+        poses: &mut Best<HangingPose>,
+        meter: &mut Meter,
+    ) -> Result<(), Stop> {
         if !self.params.settle {
-            while !poses.is_full()
-                && let Some(candidate) = queue.take()
-            {
+            while let Some(candidate) = candidates.next(meter)? {
                 // They come in order.
-                poses.offer(HangingPose { pose: candidate.pose(), ..HangingPose::default() }, |_, _| false);
-                queue.discount(&candidate, 1.0);
+                poses.offer(HangingPose { pose: candidate.pose, ..HangingPose::default() }, |_, _| false);
+                if poses.is_full() {
+                    break;
+                }
+                candidates.discount(&candidate, 1.0);
             }
             return Ok(());
         }
         let attempts = self.params.settle_attempts;
         for attempt in 0..attempts {
             meter.progress(attempt as f32 / attempts as f32);
-            let Some(candidate) = queue.take() else { break };
-            match self.release(&candidate.pose(), meter)? {
+            let Some(candidate) = candidates.next(meter)? else { break };
+            match self.release(&candidate.pose, meter)? {
                 Some(pose) => {
                     self.offer(pose, poses);
-                    queue.discount(&candidate, REST_SHARE);
+                    candidates.discount(&candidate, REST_SHARE);
                 }
-                None => queue.discount(&candidate, 1.0),
+                None => candidates.discount(&candidate, 1.0),
             }
             if self.counts.firm >= self.params.firm_enough {
                 break;

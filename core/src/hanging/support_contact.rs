@@ -25,8 +25,9 @@ pub(super) const MAX_CONTACTS: usize = 96;
 const APART: f32 = 0.012;
 /// By so much farther then.
 const FARTHER: f32 = 1.4;
-/// Least cosine between the normal and up: `alpha_s` of section II-C, with less asked, for steep pegs.
-const LEAST_COSINE: f32 = 0.3;
+/// Least cosine between the normal and up: `alpha_s` of section II-C. The ridges of bars come first, so that contacts are on them and
+/// not on their flanks; at last less is asked than in the paper, for steep pegs.
+const LEAST_COSINES: [f32; 4] = [0.95, 0.8, 0.6, 0.3];
 
 /// What the search looks at.
 pub(super) struct Search<'a> {
@@ -44,11 +45,11 @@ impl Search<'_> {
         counts: &mut SupportabilityCounts,
         meter: &mut Meter,
     ) -> (usize, Result<(), Stop>) {
-        let faces_up = |normal: &Vector| normal.dot(&self.up) >= LEAST_COSINE;
-        counts.contact_points = self.normals.iter().filter(|normal| faces_up(normal)).count();
+        let [.., least] = LEAST_COSINES;
+        counts.contact_points = self.normals.iter().filter(|normal| normal.dot(&self.up) >= least).count();
         let mut apart = APART;
         let count = loop {
-            match self.spread(apart, slots, faces_up) {
+            match self.spread(apart, slots) {
                 Some(count) => break count,
                 None => apart *= FARTHER,
             }
@@ -64,21 +65,20 @@ impl Search<'_> {
     }
 
     /// Contacts this far apart; `None` if they are more than `slots`.
-    fn spread(
-        &self,
-        apart: f32,
-        slots: &mut [SupportContact],
-        faces_up: impl Fn(&Vector) -> bool,
-    ) -> Option<usize> {
+    fn spread(&self, apart: f32, slots: &mut [SupportContact]) -> Option<usize> {
         let mut count = 0;
-        for (point, normal) in self.tree.points().iter().zip(self.normals).filter(|(_, n)| faces_up(n)) {
-            let is_near = |other: &SupportContact| (other.position - point).norm_squared() < apart * apart;
-            if slots[..count].iter().any(is_near) {
-                continue;
+        for least in LEAST_COSINES {
+            let points = self.tree.points().iter().zip(self.normals);
+            for (point, normal) in points.filter(|(_, normal)| normal.dot(&self.up) >= least) {
+                let is_near =
+                    |other: &SupportContact| (other.position - point).norm_squared() < apart * apart;
+                if slots[..count].iter().any(is_near) {
+                    continue;
+                }
+                let slot = slots.get_mut(count)?;
+                *slot = SupportContact { position: *point, normal: *normal, bar_direction: Vector::zeros() };
+                count += 1;
             }
-            let slot = slots.get_mut(count)?;
-            *slot = SupportContact { position: *point, normal: *normal, bar_direction: Vector::zeros() };
-            count += 1;
         }
         Some(count)
     }

@@ -4,21 +4,21 @@ use super::{Body, Support};
 use crate::geometry::{Point, Pose};
 use crate::monitor::{Meter, Stop};
 
-/// Whether every point of the supporter is farther than `clearance` metres from the object at `pose`.
-pub(crate) fn is_clear(
+/// A point of the supporter that is not farther than `clearance` metres from the object at `pose`, if there is one.
+pub(crate) fn first_within(
     scene: (&Body, &Support),
     pose: &Pose,
     clearance: f32,
     meter: &mut Meter,
-) -> Result<bool, Stop> {
+) -> Result<Option<Point>, Stop> {
     let field = scene.0.field;
     // Beyond the band the field may say no more than that a point is there.
     let clearance = clearance.min(0.9 * field.band());
     let is_off = |point: &Point, radius: f32| field.distance(point) - radius > clearance;
-    all_points(scene, pose, clearance, is_off, |point| is_off(point, 0.0), meter)
+    first(scene, pose, clearance, is_off, |point| is_off(point, 0.0), meter)
 }
 
-/// The same, exactly. And it is not clear either where the field overlooks something thin, such as the strings of a racquet, that
+/// Whether every point of the supporter is farther than `clearance` metres from the object's surface, exactly. And it is not clear either where the field overlooks something thin, such as the strings of a racquet, that
 /// passes closer to a point of the supporter than the points are apart: it may run through between them.
 pub(crate) fn is_off_surface(
     scene: (&Body, &Support),
@@ -35,26 +35,26 @@ pub(crate) fn is_off_surface(
         };
         !surface.is_within(point, clearance) && !is_overlooked()
     };
-    all_points(scene, pose, greatest, is_off, is_point_off, meter)
+    Ok(first(scene, pose, greatest, is_off, is_point_off, meter)?.is_none())
 }
 
 /// The field is farther off than its error, in voxels, only where it overlooks something.
 const OVERLOOKED: f32 = 0.3;
 
-/// Whether `is_point_off` says so of all points of the supporter, in object coordinates. Those that are farther than `distance` from a
-/// ball around the body are, and so is everything within a radius of a point of which `is_off` says so.
-fn all_points(
+/// The first point of the supporter of which `is_point_off`, asked in object coordinates, is not true. Points that are farther than
+/// `distance` from a ball around the body are off, and so is everything within a radius of a point of which `is_off` says so.
+fn first(
     (body, support): (&Body, &Support),
     pose: &Pose,
     distance: f32,
     is_off: impl Fn(&Point, f32) -> bool,
     is_point_off: impl Fn(&Point) -> bool,
     meter: &mut Meter,
-) -> Result<bool, Stop> {
+) -> Result<Option<Point>, Stop> {
     let to_object = pose.inverse();
-    let (mut clear, mut queries) = (true, 0);
+    let (mut found, mut queries) = (None, 0);
     support.tree.bvh().descend(|_, node| {
-        if !clear {
+        if found.is_some() {
             return false;
         }
         let aabb = node.aabb();
@@ -65,10 +65,11 @@ fn all_points(
         }
         if let Some(items) = node.items() {
             queries += items.len();
-            clear = support.tree.points()[items].iter().all(|point| is_point_off(&(to_object * point)));
+            let mut points = support.tree.points()[items].iter();
+            found = points.find(|point| !is_point_off(&(to_object * *point))).copied();
         }
-        clear
+        found.is_none()
     });
     meter.distance_queries(queries)?;
-    Ok(clear)
+    Ok(found)
 }

@@ -17,7 +17,7 @@ mod support;
 mod tests;
 
 pub(crate) use body::Body;
-pub(crate) use clearance::{is_clear, is_off_surface};
+pub(crate) use clearance::{first_within, is_off_surface};
 pub(crate) use contact::Near;
 pub use margin::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
 pub(crate) use margin::{Firmness, firmness};

