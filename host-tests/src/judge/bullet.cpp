@@ -44,20 +44,23 @@ struct Facets {
     std::vector<btVector3> corners;
     std::vector<btVector4> planes;  // outward normal, and how far along it the plane is
 
-    bool is_beyond(const Facets& other, const btTransform& to_other) const {
-        std::vector<btVector3>& moved = scratch();
-        moved.clear();
-        for (const btVector3& corner : corners) moved.push_back(to_other * corner);
-        return std::any_of(other.planes.begin(), other.planes.end(), [&](const btVector4& plane) {
-            return std::all_of(moved.begin(), moved.end(), [&](const btVector3& corner) {
-                return corner.dot(plane) - plane.w() > 2 * (MARGIN + BREAKING);
-            });
-        });
-    }
+    btVector3 middle{0, 0, 0};
+    btScalar reach = 0;  // of the corners from the middle
 
-    static std::vector<btVector3>& scratch() {
-        thread_local std::vector<btVector3> points;
-        return points;
+    // The ball around the hull first: it is far quicker to say.
+    bool is_beyond(const Facets& other, const btTransform& to_other) const {
+        constexpr btScalar NEAR = 2 * (MARGIN + BREAKING);
+        btVector3 ball = to_other * middle;
+        for (const btVector4& plane : other.planes) {
+            btScalar height = ball.dot(plane) - plane.w();
+            if (height > NEAR + reach) return true;
+            if (height < NEAR) continue;
+            btVector3 normal = plane * to_other.getBasis();
+            btScalar least = NEAR - height + normal.dot(middle);
+            if (std::all_of(corners.begin(), corners.end(), [&](const btVector3& c) { return normal.dot(c) > least; }))
+                return true;
+        }
+        return false;
     }
 };
 
@@ -152,7 +155,11 @@ void add_hull(void* world, bool body, const double* points, size_t count) {
     for (int i = 0; i < hull.vertices.size(); ++i) shape->addPoint(hull.vertices[i], false);
     auto facets = std::make_unique<Facets>();
     facets->of_body = body;
-    for (int i = 0; i < hull.vertices.size(); ++i) facets->corners.push_back(hull.vertices[i] + middle);
+    facets->middle = middle;
+    for (int i = 0; i < hull.vertices.size(); ++i) {
+        facets->corners.push_back(hull.vertices[i] + middle);
+        facets->reach = std::max(facets->reach, hull.vertices[i].length());
+    }
     for (int i = 0; i < hull.faces.size(); ++i) {
         const auto* edge = &hull.edges[hull.faces[i]];
         const btVector3& corner = hull.vertices[edge->getSourceVertex()];
