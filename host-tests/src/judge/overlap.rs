@@ -14,6 +14,8 @@ use parry3d::shape::TriMesh;
 
 /// Shifts that are tried, metres. The last is not passed: what overlaps more deeply is said to be this deep.
 const SHIFTS: [f64; 8] = [0.00025, 0.0005, 0.001, 0.0015, 0.002, 0.004, 0.008, 0.016];
+/// Surfaces are held in millimetres: in metres, parry's tolerances make narrow triangles meet that are far apart.
+const SCALE: f32 = 1000.0;
 /// Vertices of each shape that are looked for inside the other. If no surfaces cross, one of each body would do.
 const PROBES: usize = 8;
 
@@ -49,7 +51,8 @@ impl Overlap {
 
     /// Whether nothing overlaps.
     pub(crate) fn is_free(&self, pose: &Isometry3<f64>) -> bool {
-        let into_supporter: Pose = pose.cast();
+        let mut into_supporter: Pose = pose.cast();
+        into_supporter.translation.vector *= SCALE;
         let crossing = query::intersection_test(
             &pose_to_parry(&Pose::identity()),
             &self.supporter.surface,
@@ -64,7 +67,7 @@ impl Overlap {
 
 impl Side {
     fn new(solid: &Solid) -> Self {
-        let points = solid.vertices.iter().map(|&vertex| vertex.into()).collect();
+        let points = solid.vertices.iter().map(|vertex| vertex.map(|x| x * SCALE).into()).collect();
         let step = solid.vertices.len().div_ceil(PROBES).max(1);
         Self {
             surface: TriMesh::new(points, solid.triangles.clone()).expect("a shape has triangles"),
@@ -77,7 +80,7 @@ impl Side {
         let aabb = self.surface.local_aabb();
         self.inside.as_ref().is_some_and(|winding| {
             points.iter().map(|point| pose * point).any(|point| {
-                let is_near = aabb.contains_local_point(<[f32; 3]>::from(point.cast()).into());
+                let is_near = aabb.contains_local_point(<[f32; 3]>::from(point.cast::<f32>() * SCALE).into());
                 is_near && winding.number(&point).abs() > 0.5
             })
         })
