@@ -25,8 +25,8 @@ impl Mass {
         for &triangle in &solid.triangles {
             let [a, b, c] = triangle.map(|index| at(index) - origin);
             // A tetrahedron has a corner at the origin too.
-            volume.add(a.dot(&b.cross(&c)) / 6.0, [a, b, c], 4.0);
-            area.add((b - a).cross(&(c - a)).norm() / 2.0, [a, b, c], 3.0);
+            volume.add(a.dot(&b.cross(&c)), [a, b, c], [6.0, 24.0, 120.0]);
+            area.add((b - a).cross(&(c - a)).norm(), [a, b, c], [2.0, 6.0, 24.0]);
         }
         let fills_some = volume.size.abs() > LEAST_THICKNESS * area.size;
         let Integrals { size, first, second } = if fills_some && solid.is_closed() { volume } else { area };
@@ -59,14 +59,15 @@ struct Integrals {
 }
 
 impl Integrals {
-    /// Adds those of a simplex with so many corners: these, and perhaps the origin.
-    fn add(&mut self, size: f64, corners: [Vector3<f64>; 3], count: f64) {
+    /// Adds those of a simplex of n dimensions: the determinant of its edges, its corners, of which one more may be the
+    /// origin, and the factorials of n, n + 1 and n + 2.
+    fn add(&mut self, determinant: f64, corners: [Vector3<f64>; 3], factorials: [f64; 3]) {
         let [a, b, c] = corners;
         let sum = a + b + c;
         let squares = a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose();
-        self.size += size;
-        self.first += sum * (size / count);
-        self.second += squares * (size / (count * (count + 1.0)));
+        self.size += determinant / factorials[0];
+        self.first += sum * (determinant / factorials[1]);
+        self.second += squares * (determinant / factorials[2]);
     }
 }
 
