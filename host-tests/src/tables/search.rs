@@ -6,10 +6,13 @@ use crate::judge::{Bullet, Judge, Overlap, Scene};
 use crate::shapes::Random;
 use crate::solid::Solid;
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use std::f64::consts::{PI, TAU};
 
-/// Poses that are let go at most, and that are drawn at most, since most collide.
+/// Poses that are let go at most, and that are tried at most, since most collide.
 const DROPS: usize = 60;
-const DRAWS: usize = 4000;
+const TRIES: usize = 5000;
+/// Points that are drawn of each surface; few of them face the right way.
+const SAMPLES: usize = 20_000;
 /// How much a surface has to face the right way: the cosine of the angle.
 const FACING: f64 = 0.3;
 /// The object is let go this far above the supporter, metres.
@@ -24,18 +27,24 @@ pub(super) fn finds_a_pose(object: &Solid, supporter: &Solid, seed: u64) -> bool
     let (object, supporter) = (Surface::new(object), Surface::new(supporter));
     let centre = scene.mass.frame.translation.vector;
     let mut random = Random::named("search", seed);
-    let poses = (0..DRAWS).filter_map(|_| {
-        let (hold, side) = object.sample(&mut random);
-        let (rest, up) = supporter.sample(&mut random);
-        let lever = (centre - hold).try_normalize(1e-6)?;
+    let samples = |surface: &Surface, random: &mut Random| -> Vec<_> {
+        (0..SAMPLES).map(|_| surface.sample(random)).collect()
+    };
+    let lever = |hold: Vector3<f64>| (centre - hold).try_normalize(1e-6).unwrap_or_default();
+    let mut holds = samples(&object, &mut random);
+    holds.retain(|(hold, side)| side.dot(&lever(*hold)) > FACING);
+    let mut rests = samples(&supporter, &mut random);
+    rests.retain(|(_, side)| side.z > FACING);
+    if holds.is_empty() || rests.is_empty() {
+        return false;
+    }
+    let poses = (0..TRIES).filter_map(|_| {
+        let (hold, _) = holds[random.pick(holds.len())];
+        let (rest, _) = rests[random.pick(rests.len())];
         let gap = Vector3::z() * random.range(LOWEST, HIGHEST);
-        let yaw = Rotation3::from_axis_angle(&Vector3::z_axis(), random.range(0.0, std::f64::consts::TAU));
-        if side.dot(&lever) < FACING || up.z < FACING {
-            return None;
-        }
-        let down = -Vector3::z();
-        let upright = Rotation3::rotation_between(&lever, &down)
-            .unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
+        let yaw = Rotation3::from_axis_angle(&Vector3::z_axis(), random.range(0.0, TAU));
+        let upright = Rotation3::rotation_between(&lever(hold), &-Vector3::z())
+            .unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::x_axis(), PI));
         let turn = UnitQuaternion::from_rotation_matrix(&(yaw * upright));
         let pose = Isometry3::from_parts(Translation3::from(rest + gap - turn * hold), turn);
         overlap.is_free(&pose).then_some(pose)
