@@ -10,7 +10,8 @@ use parry3d::math::Vector;
 use parry3d::query::{Ray, RayCast};
 use parry3d::shape::TriMesh;
 
-/// How far the simplified surface may be from the mesh, metres; the simplification estimates it.
+/// How far the simplified surface may be from the mesh, metres, as the simplification estimates it. Of 94 real meshes the
+/// vertices are 0.1 to 0.6 mm off in the mean; the worst vertex 1.2 mm in the median mesh, and more at rims of open ones.
 const SIMPLIFICATION: f32 = 0.0007;
 /// Thickest that the shell is, and the thinnest, metres.
 const THICKEST: f32 = 0.002;
