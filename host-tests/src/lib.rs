@@ -3,5 +3,7 @@
 pub mod gallery;
 pub mod judge;
 pub mod shapes;
+mod shell;
 pub mod solid;
 pub mod tables;
+mod winding;

@@ -1,16 +1,18 @@
 //! Rigid shapes as the judges need them.
 
-use parry3d::transformation::vhacd::{VHACD, VHACDParameters};
+use std::collections::HashMap;
 
-/// A rigid shape: its closed surface, and convex parts that fill it. Metres; a supporter stands with z up.
+/// A rigid shape: its surface, and convex parts that are as solid as it is. Metres; a supporter stands with z up.
 #[derive(Clone, Debug, Default)]
 pub struct Solid {
     /// Vertices of the surface.
     pub vertices: Vec<[f32; 3]>,
     /// Corners of its triangles, counter-clockwise seen from outside. Bodies may overlap.
     pub triangles: Vec<[u32; 3]>,
-    /// Convex parts that together are the shape.
+    /// Convex parts that together are the shape, or its shell.
     pub parts: Vec<Part>,
+    /// Whether the parts are only its outermost layer.
+    pub is_shell: bool,
 }
 
 /// A convex part of a shape.
@@ -38,49 +40,19 @@ pub enum Part {
     },
 }
 
-/// Voxels along the longest side of a mesh that is taken apart, and how hollow a part may be, as a fraction of it.
-const RESOLUTION: u32 = 80;
-const CONCAVITY: f32 = 0.005;
-
 impl Solid {
-    /// A mesh of unknown make, taken apart into parts that are about convex; and what these parts fill, whose surface
-    /// is closed even if the mesh's is not.
-    pub fn take_apart(vertices: Vec<[f32; 3]>, triangles: Vec<[u32; 3]>) -> (Self, Self) {
-        let points: Vec<_> = vertices.iter().map(|&v| v.into()).collect();
-        let parameters =
-            VHACDParameters { resolution: RESOLUTION, concavity: CONCAVITY, ..VHACDParameters::default() };
-        let hulls = VHACD::decompose(&parameters, &points, &triangles, true)
-            .compute_exact_convex_hulls(&points, &triangles);
-        let (mut parts, mut filled) = (Vec::new(), Self::default());
-        for (corners, faces) in hulls {
-            let corners: Vec<[f32; 3]> = corners.into_iter().map(Into::into).collect();
-            let first = filled.vertices.len() as u32;
-            filled.vertices.extend(&corners);
-            filled.triangles.extend(faces.iter().map(|face| face.map(|corner| corner + first)));
-            parts.push(Part::Hull(outermost(&corners)));
+    /// Whether the surface bounds a volume: each edge is gone along as often one way as the other. Vertices at the same
+    /// position count as one.
+    pub fn is_closed(&self) -> bool {
+        // Adding zero makes -0 and 0 the same.
+        let at = |index: u32| self.vertices[index as usize].map(|x| (x + 0.0).to_bits());
+        let mut ways: HashMap<_, i32> = HashMap::new();
+        for &[a, b, c] in &self.triangles {
+            for [from, to] in [[a, b], [b, c], [c, a]].map(|edge| edge.map(at)) {
+                *ways.entry(if from < to { (from, to) } else { (to, from) }).or_default() +=
+                    from.cmp(&to) as i32;
+            }
         }
-        filled.parts.clone_from(&parts);
-        (Self { vertices, triangles, parts }, filled)
+        ways.values().all(|&ways| ways == 0)
     }
-}
-
-/// Directions in which a part that was cut out of a mesh keeps its outermost corner. The engines' time goes with the
-/// corners, and exact hulls of scans have hundreds.
-const DIRECTIONS: u32 = 48;
-
-fn outermost(corners: &[[f32; 3]]) -> Vec<[f32; 3]> {
-    let golden_angle = std::f32::consts::PI * (3.0 - 5_f32.sqrt());
-    let mut kept: Vec<usize> = (0..DIRECTIONS)
-        .filter_map(|k| {
-            let z = 1.0 - (2 * k + 1) as f32 / DIRECTIONS as f32;
-            let (sin, cos) = libm::sincosf(golden_angle * k as f32);
-            let across = (1.0 - z * z).sqrt();
-            let along =
-                |corner: &[f32; 3]| corner[0] * across * cos + corner[1] * across * sin + corner[2] * z;
-            (0..corners.len()).max_by(|&a, &b| along(&corners[a]).total_cmp(&along(&corners[b])))
-        })
-        .collect();
-    kept.sort_unstable();
-    kept.dedup();
-    kept.into_iter().map(|index| corners[index]).collect()
 }

@@ -3,7 +3,7 @@
 use hangpose::hanging::HangingPose;
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, geometry::Mesh, sample_supporter};
 use host_tests::judge::{Bullet, Judge, Scene};
-use host_tests::tables::case::{Case, made};
+use host_tests::tables::case::{Case, Fit, made};
 use host_tests::tables::run::{Engine, Options, run};
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -26,7 +26,7 @@ fn best(case: &Case, params: &Params) -> Option<HangingPose> {
 
 /// How many of the pairs hang by their best pose, once it is changed by each of `changes`.
 fn successes<const N: usize>(params: &Params, changes: [fn(HangingPose) -> HangingPose; N]) -> [usize; N] {
-    let cases: Vec<Case> = made(PAIRS, SEED).into_iter().filter(|case| case.fits).collect();
+    let cases: Vec<Case> = made(PAIRS, SEED).into_iter().filter(|case| case.fit == Fit::Yes).collect();
     assert_eq!(cases.len(), PAIRS);
     let (next, counts) = (AtomicUsize::new(0), [const { AtomicUsize::new(0) }; N]);
     std::thread::scope(|scope| {

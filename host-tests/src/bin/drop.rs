@@ -41,18 +41,17 @@ struct PredictedPose {
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
-    let take_apart = |path: &PathBuf| -> Result<(Solid, Solid)> {
+    let shell = |path: &PathBuf| -> Result<Solid> {
         let mesh = read_mesh(path)?;
-        Ok(Solid::take_apart(mesh.vertices, mesh.triangles))
+        Ok(Solid::shell(mesh.vertices, mesh.triangles))
     };
-    let (object, filling) = take_apart(&arguments.object)?;
-    let (supporter, _) = take_apart(&arguments.supporter)?;
+    let (object, supporter) = (shell(&arguments.object)?, shell(&arguments.supporter)?);
     let at = || arguments.poses.display().to_string();
     let text = std::fs::read_to_string(&arguments.poses).with_context(at)?;
     let prediction: Prediction = serde_json::from_str(&text).with_context(at)?;
     ensure!(!prediction.poses.is_empty(), "{}: there are no poses to drop", at());
 
-    let scene = Scene::filled(&object, &supporter, &filling);
+    let scene = Scene::new(&object, &supporter);
     let mut best = None;
     for (rank, predicted) in (1..).zip(&prediction.poses) {
         let rotation = UnitQuaternion::from_quaternion(Quaternion::from(predicted.quaternion_xyzw));

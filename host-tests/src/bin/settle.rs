@@ -9,7 +9,7 @@ use hangpose::memory::Limits;
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses, sample_supporter};
 use host_tests::judge::{Bullet, Judge, Scene};
 use host_tests::shapes::Random;
-use host_tests::tables::case::{Case, made};
+use host_tests::tables::case::{Case, Fit, made};
 use host_tests::tables::report::wilson;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -34,7 +34,7 @@ type Said = [bool; 3];
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
     let cases = made(arguments.pairs, arguments.seed);
-    let cases: Vec<&Case> = cases.iter().filter(|case| case.fits).collect();
+    let cases: Vec<&Case> = cases.iter().filter(|case| case.fit == Fit::Yes).collect();
     let (next, said) = (AtomicUsize::new(0), Mutex::new(Vec::<Said>::new()));
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, Into::into) {
@@ -82,7 +82,7 @@ fn judge(case: &Case, count: usize) -> Vec<Said> {
     let limits = Limits { points: cloud.points().len(), ..Limits::NONE };
     let mut memory = vec![0; predict_bytes(&limits)];
     let mut random = Random::named(&case.name, 1);
-    let scene = Scene { tilt: false, ..Scene::filled(&case.object, &case.supporter, &case.filling) };
+    let scene = Scene { tilt: false, ..Scene::new(&case.object, &case.supporter) };
     let chosen = (0..count.min(found.poses.len())).map(|_| found.poses[random.pick(found.poses.len())].pose);
     chosen
         .filter_map(|pose| {

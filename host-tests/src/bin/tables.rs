@@ -117,17 +117,22 @@ fn main() -> Result<()> {
         })
     };
     let made = work(&case::made(arguments.pairs, arguments.seed), arguments.engine)?;
+    let real = match &arguments.meshes {
+        // ODE takes minutes for a scan's thousands of triangles against those of another.
+        Some(folder) => {
+            let engine = if arguments.engine == Engine::Both { Engine::Bullet } else { arguments.engine };
+            work(&real::real(folder, arguments.real_pairs)?, engine)?
+        }
+        None => Vec::new(),
+    };
+    let titled = [("Made pairs", &made), ("Real meshes", &real)];
+    let titled = titled.into_iter().filter(|(_, rows)| !rows.is_empty());
     if arguments.summary {
-        print!("{}", report::summary(&made));
+        titled.for_each(|(title, rows)| print!("{title}:\n\n{}", report::summary(rows)));
         return Ok(());
     }
     let mut text = report::heading(&made);
-    text += &report::tables("Made pairs", &made);
-    if let Some(folder) = &arguments.meshes {
-        // ODE takes minutes for a scan's thousands of triangles against those of another.
-        let engine = if arguments.engine == Engine::Both { Engine::Bullet } else { arguments.engine };
-        text += &report::tables("Real meshes", &work(&real::real(folder, arguments.real_pairs)?, engine)?);
-    }
+    titled.for_each(|(title, rows)| text += &report::tables(title, rows));
     std::fs::write(&arguments.out, text).with_context(|| arguments.out.display().to_string())?;
     println!("{}", arguments.out.display());
     Ok(())

@@ -2,6 +2,7 @@
 #include "engine.h"
 
 #include <btBulletDynamicsCommon.h>
+#include <BulletCollision/CollisionDispatch/btCompoundCompoundCollisionAlgorithm.h>
 #include <LinearMath/btConvexHullComputer.h>
 
 #include <algorithm>
@@ -36,21 +37,64 @@ struct Deepest : btCollisionWorld::ContactResultCallback {
     }
 };
 
+// A hull as its compound sees it: what Bullet asks before it takes a close look at two parts whose boxes overlap. Shells
+// have so many of these that nearly all of the time would go there.
+struct Facets {
+    bool of_body;
+    std::vector<btVector3> corners;
+    std::vector<btVector4> planes;  // outward normal, and how far along it the plane is
+
+    btVector3 middle{0, 0, 0};
+    btScalar reach = 0;  // of the corners from the middle
+
+    // The ball around the hull first: it is far quicker to say.
+    bool is_beyond(const Facets& other, const btTransform& to_other) const {
+        constexpr btScalar NEAR = 2 * (MARGIN + BREAKING);
+        btVector3 ball = to_other * middle;
+        for (const btVector4& plane : other.planes) {
+            btScalar height = ball.dot(plane) - plane.w();
+            if (height > NEAR + reach) return true;
+            if (height < NEAR) continue;
+            btVector3 normal = plane * to_other.getBasis();
+            btScalar least = NEAR - height + normal.dot(middle);
+            if (std::all_of(corners.begin(), corners.end(), [&](const btVector3& c) { return normal.dot(c) > least; }))
+                return true;
+        }
+        return false;
+    }
+};
+
+// Where the body is whose world the thread is in.
+thread_local const btCollisionObject* current = nullptr;
+
+bool are_close(const btCollisionShape* a, const btCollisionShape* b) {
+    const auto* facets = static_cast<const Facets*>(a->getUserPointer());
+    const auto* others = static_cast<const Facets*>(b->getUserPointer());
+    if (!facets || !others || !current) return true;
+    if (!facets->of_body) std::swap(facets, others);
+    const btTransform& pose = current->getWorldTransform();
+    return !facets->is_beyond(*others, pose) && !others->is_beyond(*facets, pose.inverse());
+}
+
 struct World {
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher{&configuration};
     btDbvtBroadphase broadphase;
     btSequentialImpulseConstraintSolver solver;
     btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
-    btCompoundShape compound;
+    btCompoundShape compound, fixed_compound;
     std::vector<std::unique_ptr<btCollisionShape>> shapes;
-    std::vector<std::unique_ptr<btCollisionObject>> fixed;
+    std::vector<std::unique_ptr<Facets>> facets;
+    btCollisionObject fixed;
     std::unique_ptr<btRigidBody> body;
     btScalar time_step, friction;
 
     explicit World(const Setup& setup) : time_step(btScalar(setup.time_step)), friction(btScalar(setup.friction)) {
         static std::once_flag once;
-        std::call_once(once, [] { gContactBreakingThreshold = BREAKING; });
+        std::call_once(once, [] {
+            gContactBreakingThreshold = BREAKING;
+            gCompoundCompoundChildShapePairCallback = are_close;
+        });
         dispatcher.setDispatcherFlags(dispatcher.getDispatcherFlags() &
                                       ~btCollisionDispatcher::CD_USE_RELATIVE_CONTACT_BREAKING_THRESHOLD);
         world.setForceUpdateAllAabbs(false);
@@ -65,25 +109,17 @@ struct World {
         of_body.m_angularDamping = btScalar(1 - std::exp(-setup.damping));  // Bullet's is the part lost per second
         body = std::make_unique<btRigidBody>(of_body);
         body->setActivationState(DISABLE_DEACTIVATION);
+        fixed.setCollisionShape(&fixed_compound);
+        fixed.setFriction(1);
     }
 
     ~World() {
         if (body->getBroadphaseHandle()) world.removeRigidBody(body.get());
-        for (auto& object : fixed) world.removeCollisionObject(object.get());
+        if (fixed.getBroadphaseHandle()) world.removeCollisionObject(&fixed);
     }
 
     void add(bool to_body, std::unique_ptr<btCollisionShape> shape, const btTransform& pose) {
-        if (to_body) {
-            compound.addChildShape(pose, shape.get());
-        } else {
-            auto object = std::make_unique<btCollisionObject>();
-            object->setCollisionShape(shape.get());
-            object->setWorldTransform(pose);
-            object->setFriction(1);
-            world.addCollisionObject(object.get(), btBroadphaseProxy::StaticFilter,
-                                     btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);
-            fixed.push_back(std::move(object));
-        }
+        (to_body ? compound : fixed_compound).addChildShape(pose, shape.get());
         shapes.push_back(std::move(shape));
     }
 
@@ -117,11 +153,33 @@ void add_hull(void* world, bool body, const double* points, size_t count) {
     if (shrunk < 0 || hull.vertices.size() == 0) hull.compute(all[0].m_floats, sizeof(btVector3), int(count), 0, 0);
     auto shape = std::make_unique<btConvexHullShape>();
     for (int i = 0; i < hull.vertices.size(); ++i) shape->addPoint(hull.vertices[i], false);
+    auto facets = std::make_unique<Facets>();
+    facets->of_body = body;
+    facets->middle = middle;
+    for (int i = 0; i < hull.vertices.size(); ++i) {
+        facets->corners.push_back(hull.vertices[i] + middle);
+        facets->reach = std::max(facets->reach, hull.vertices[i].length());
+    }
+    for (int i = 0; i < hull.faces.size(); ++i) {
+        const auto* edge = &hull.edges[hull.faces[i]];
+        const btVector3& corner = hull.vertices[edge->getSourceVertex()];
+        const btVector3& next = hull.vertices[edge->getTargetVertex()];
+        const btVector3& last = hull.vertices[edge->getNextEdgeOfFace()->getTargetVertex()];
+        btVector3 normal = (next - corner).cross(last - corner);
+        if (normal.length2() == 0) continue;
+        normal.normalize();
+        btScalar along = normal.dot(corner);  // the middle is inside
+        if (along < 0) normal = -normal;
+        btVector4 plane(normal.x(), normal.y(), normal.z(), std::abs(along) + normal.dot(middle));
+        facets->planes.push_back(plane);
+    }
     // A flat set has no hull for Bullet, and a shape without points crashes it.
     if (hull.vertices.size() == 0)
         for (const btVector3& point : all) shape->addPoint(point, false);
     shape->recalcLocalAabb();
     shape->setMargin(std::max(shrunk, btScalar(0)));
+    if (hull.vertices.size() > 0) shape->setUserPointer(facets.get());
+    of(world).facets.push_back(std::move(facets));
     of(world).add(body, std::move(shape), btTransform(btQuaternion::getIdentity(), middle));
 }
 
@@ -146,6 +204,10 @@ void add_box(void* world, bool body, const double* centre, const double* axes, c
 void place(void* handle, const State* state) {
     World& it = of(handle);
     if (it.body->getBroadphaseHandle()) it.world.removeRigidBody(it.body.get());
+    // Only now are all of its shapes there, which its bounds are of.
+    if (!it.fixed.getBroadphaseHandle())
+        it.world.addCollisionObject(&it.fixed, btBroadphaseProxy::StaticFilter,
+                                    btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);
     btQuaternion rotation;
     for (int i = 0; i < 4; ++i) rotation[i] = btScalar(state->rotation[i]);
     btTransform pose(rotation.normalized(), scaled(state->position));
@@ -163,6 +225,7 @@ void pull(void* handle, const double* gravity) { of(handle).world.setGravity(sca
 
 uint32_t step(void* handle, uint32_t count) {
     World& it = of(handle);
+    current = it.body.get();
     uint32_t loaded = 0;
     for (uint32_t i = 0; i < count; ++i) {
         it.world.stepSimulation(it.time_step, 0);
@@ -184,8 +247,9 @@ void read(void* handle, State* state) {
 
 double penetration(void* handle) {
     World& it = of(handle);
+    current = it.body.get();
     Deepest deepest;
-    for (auto& object : it.fixed) it.world.contactPairTest(it.body.get(), object.get(), deepest);
+    it.world.contactPairTest(it.body.get(), &it.fixed, deepest);
     return -deepest.distance / SCALE;
 }
 

@@ -2,8 +2,8 @@
 
 use super::Scene;
 use crate::solid::{Part, Solid};
+use crate::winding::Winding;
 use nalgebra::{Isometry3, Point3, Vector3};
-use std::f64::consts::PI;
 
 /// Points of a supporter's part are looked for inside the object this far apart, metres.
 const SPACING: f32 = 0.01;
@@ -11,6 +11,7 @@ const SPACING: f32 = 0.01;
 pub(super) struct Buried {
     vertices: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
+    winding: Winding,
     low: Point3<f64>,
     high: Point3<f64>,
     /// Points deep in the supporter, and how much of it is around each.
@@ -24,7 +25,9 @@ impl Buried {
         let low = vertices.iter().copied().reduce(|a, b| a.inf(&b)).unwrap_or_default();
         let high = vertices.iter().copied().reduce(|a, b| a.sup(&b)).unwrap_or_default();
         let cores = scene.supporter.parts.iter().flat_map(cores).collect();
-        Self { vertices, triangles: triangles.clone(), low, high, cores }
+        let corners = triangles.iter().map(|triangle| triangle.map(|index| vertices[index as usize]));
+        let winding = Winding::new(corners);
+        Self { vertices, triangles: triangles.clone(), winding, low, high, cores }
     }
 
     /// How deep the supporter's cores are inside the object, and the ball around each with it; 0 when none is.
@@ -44,18 +47,8 @@ impl Buried {
         self.triangles.iter().map(|triangle| triangle.map(|index| self.vertices[index as usize]))
     }
 
-    /// Whether the surface winds around a point (Van Oosterom and Strackee 1983, for a triangle's solid angle).
     fn contains(&self, point: &Point3<f64>) -> bool {
-        let angle: f64 = self
-            .corners()
-            .map(|corners| {
-                let [a, b, c] = corners.map(|corner| corner - point);
-                let [la, lb, lc] = [a.norm(), b.norm(), c.norm()];
-                let under = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
-                2.0 * a.dot(&b.cross(&c)).atan2(under)
-            })
-            .sum();
-        angle > 2.0 * PI
+        self.winding.number(point) > 0.5
     }
 
     fn distance(&self, point: &Point3<f64>) -> f64 {

@@ -15,29 +15,23 @@ pub struct Mass {
 }
 
 impl Mass {
-    /// Of a solid of one density that weighs `mass` kilograms. Where bodies of its surface overlap it is denser.
-    ///
-    /// # Panics
-    ///
-    /// If its surface encloses no volume.
+    /// Of a solid of one density that weighs `mass` kilograms; where bodies of its surface overlap it is denser. If the
+    /// surface is not closed, or bounds nothing, it is a sheet of one thickness.
     pub fn of(solid: &Solid, mass: f64) -> Self {
-        // Tetrahedra between each triangle and a vertex of the surface, so that nothing large cancels.
         let at = |index: u32| Vector3::from(solid.vertices[index as usize]).cast::<f64>();
+        // Near the surface, so that nothing large cancels.
         let origin = solid.triangles.first().map_or_else(Vector3::zeros, |triangle| at(triangle[0]));
-        let (mut volume, mut first, mut second) = (0.0, Vector3::zeros(), Matrix3::zeros());
+        let (mut volume, mut area) = (Integrals::default(), Integrals::default());
         for &triangle in &solid.triangles {
             let [a, b, c] = triangle.map(|index| at(index) - origin);
-            let sixfold = a.dot(&b.cross(&c));
-            let sum = a + b + c;
-            volume += sixfold / 6.0;
-            first += sum * (sixfold / 24.0);
-            // The integral of x xᵀ over a tetrahedron with a corner at the origin.
-            let squares = a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose();
-            second += squares * (sixfold / 120.0);
+            // A tetrahedron has a corner at the origin too.
+            volume.add(a.dot(&b.cross(&c)), [a, b, c], [6.0, 24.0, 120.0]);
+            area.add((b - a).cross(&(c - a)).norm(), [a, b, c], [2.0, 6.0, 24.0]);
         }
-        assert!(volume > 0.0, "the surface of the solid encloses no volume");
-        let centre = first / volume;
-        let covariance = second / volume - centre * centre.transpose();
+        let fills_some = volume.size.abs() > LEAST_THICKNESS * area.size;
+        let Integrals { size, first, second } = if fills_some && solid.is_closed() { volume } else { area };
+        let centre = first / size;
+        let covariance = second / size - centre * centre.transpose();
         let inertia = (Matrix3::identity() * covariance.trace() - covariance) * mass;
         let principal = inertia.symmetric_eigen();
         let mut axes = principal.eigenvectors;
@@ -50,6 +44,30 @@ impl Mass {
             inertia: principal.eigenvalues.into(),
             frame: Isometry3::from_parts(Point3::from(origin + centre).into(), rotation),
         }
+    }
+}
+
+/// What is closed but has less volume for its surface, metres, is a folded sheet.
+const LEAST_THICKNESS: f64 = 1e-6;
+
+/// Integrals of 1, x and x xᵀ.
+#[derive(Default)]
+struct Integrals {
+    size: f64,
+    first: Vector3<f64>,
+    second: Matrix3<f64>,
+}
+
+impl Integrals {
+    /// Adds those of a simplex of n dimensions: the determinant of its edges, its corners, of which one more may be the
+    /// origin, and the factorials of n, n + 1 and n + 2.
+    fn add(&mut self, determinant: f64, corners: [Vector3<f64>; 3], factorials: [f64; 3]) {
+        let [a, b, c] = corners;
+        let sum = a + b + c;
+        let squares = a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose();
+        self.size += determinant / factorials[0];
+        self.first += sum * (determinant / factorials[1]);
+        self.second += squares * (determinant / factorials[2]);
     }
 }
 
@@ -69,7 +87,7 @@ mod tests {
         let solid = Solid {
             vertices: (0..8).map(corner).collect(),
             triangles: quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
-            parts: Vec::new(),
+            ..Solid::default()
         };
         let mass = Mass::of(&solid, 0.3);
         assert!((mass.frame.translation.vector - pose.translation.vector.cast()).norm() < 1e-7);

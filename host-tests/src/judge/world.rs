@@ -1,7 +1,8 @@
 //! A rigid body among fixed shapes in a physics engine. All that is unsafe about the judges is here.
 
 use super::buried::Buried;
-use super::{GRAVITY, Mass, Scene};
+use super::overlap::Overlap;
+use super::{GRAVITY, Mass, Scene, Verdict, verdict};
 use crate::solid::{Part, Solid};
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use std::ffi::c_void;
@@ -75,6 +76,7 @@ pub struct World {
     time_step: f64,
     frame: Isometry3<f64>,
     buried: Option<Buried>,
+    overlap: Option<Overlap>,
 }
 
 impl World {
@@ -83,7 +85,10 @@ impl World {
         let setup = Setup { mass, inertia, friction: scene.friction, time_step, damping: scene.damping };
         // SAFETY: `setup` outlives the call, which keeps no pointer to it.
         let handle = unsafe { (engine.create)(&setup) };
-        let mut world = Self { engine, handle, time_step, frame, buried: None };
+        let mut world = Self { engine, handle, time_step, frame, buried: None, overlap: None };
+        if scene.object.is_shell || scene.supporter.is_shell {
+            world.overlap = Some(Overlap::new(scene));
+        }
         world.pull(Vector3::new(0.0, 0.0, -GRAVITY));
         world
     }
@@ -211,8 +216,16 @@ impl World {
         }
     }
 
+    /// What becomes of the body when it is let go at `release`; `scene` is what the world was made of.
+    pub fn judge(&mut self, scene: &Scene, release: &Isometry3<f32>) -> Verdict {
+        verdict::examine(self, scene, &release.cast())
+    }
+
     /// How deep the body is in something where it is now, metres; 0 when it is in nothing.
     pub fn penetration(&mut self) -> f64 {
+        if let Some(overlap) = &self.overlap {
+            return overlap.depth(&self.state().pose);
+        }
         // SAFETY: the handle is alive.
         let depth = unsafe { (self.engine.penetration)(self.handle) };
         let pose = self.state().pose;

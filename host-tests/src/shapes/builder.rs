@@ -48,6 +48,7 @@ impl Builder {
             vertices: self.vertices.iter().copied().map(single).collect(),
             triangles: self.triangles.iter().map(|t| t.map(|v| v as u32)).collect(),
             parts: self.parts.iter().map(part).collect(),
+            is_shell: false,
         }
     }
 

@@ -15,14 +15,23 @@ pub struct Case {
     pub object_kind: String,
     /// Kind of the supporter.
     pub supporter_kind: String,
-    /// Whether the object can hang on the supporter, by geometry or by the manifest.
-    pub fits: bool,
+    /// Whether the object can hang on the supporter.
+    pub fit: Fit,
     /// The object.
     pub object: Arc<Solid>,
-    /// What the object's mass fills.
-    pub filling: Arc<Solid>,
     /// The supporter.
     pub supporter: Arc<Solid>,
+}
+
+/// Whether an object can hang on a supporter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fit {
+    /// It can, by geometry.
+    Yes,
+    /// It cannot, by geometry or by the manifest.
+    No,
+    /// The object can hang, by the manifest; whether on this supporter a search has to find out.
+    Unknown,
 }
 
 /// Sizes are drawn anew so often until a pair fits; then the pair is taken with another supporter.
@@ -66,15 +75,13 @@ fn made_case(object: &ObjectKind, supporter: usize, seed: u64, draw: u64, should
     if fits(&made.0, &made.1) != should_fit {
         return None;
     }
-    let shape = Arc::new(made.0.solid);
     Some(Case {
         name: format!("{}-{}-{seed}-{draw}", object.name, supporter.name),
         seed: draw,
         object_kind: object.name.into(),
         supporter_kind: supporter.name.into(),
-        fits: should_fit,
-        filling: shape.clone(),
-        object: shape,
+        fit: if should_fit { Fit::Yes } else { Fit::No },
+        object: Arc::new(made.0.solid),
         supporter: Arc::new(made.1.solid),
     })
 }

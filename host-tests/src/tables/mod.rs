@@ -6,3 +6,4 @@ pub mod real;
 pub mod report;
 pub mod row;
 pub mod run;
+mod search;

@@ -1,6 +1,6 @@
 //! Pairs of real meshes, from a folder with a `manifest.json`.
 
-use super::case::Case;
+use super::case::{Case, Fit};
 use crate::solid::Solid;
 use anyhow::{Context, Result};
 use hangpose::files::read_mesh;
@@ -19,12 +19,11 @@ struct Entry {
     up_axis: String,
 }
 
-/// A mesh that was read and taken apart.
+/// A mesh that was read and made a shell.
 struct Loaded {
     name: String,
     category: String,
     solid: Arc<Solid>,
-    filling: Arc<Solid>,
 }
 
 /// Every object on every supporter, at most `pairs` that may hang, evenly over the list, and those that cannot.
@@ -42,13 +41,11 @@ pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
     };
     let supporters = load(of("supporters/"))?;
     let mut cases = Vec::new();
-    for (group, fits) in [("objects/", true), ("unhangable/", false)] {
-        let chosen =
-            of(group).into_iter().filter(|e| if fits { e.hangable == "yes" } else { e.hangable == "no" });
-        let objects = load(chosen.collect())?;
+    for (group, hangable, fit) in [("objects/", "yes", Fit::Unknown), ("unhangable/", "no", Fit::No)] {
+        let objects = load(of(group).into_iter().filter(|e| e.hangable == hangable).collect())?;
         let all: Vec<_> =
             objects.iter().flat_map(|object| supporters.iter().map(move |s| (object, s))).collect();
-        let count = if fits { pairs } else { pairs / 2 }.min(all.len());
+        let count = if fit == Fit::No { pairs / 2 } else { pairs }.min(all.len());
         cases.extend((0..count).map(|k| {
             let (object, supporter) = all[k * all.len() / count];
             Case {
@@ -56,9 +53,8 @@ pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
                 seed: k as u64,
                 object_kind: object.category.clone(),
                 supporter_kind: supporter.name.clone(),
-                fits,
+                fit,
                 object: object.solid.clone(),
-                filling: object.filling.clone(),
                 supporter: supporter.solid.clone(),
             }
         }));
@@ -66,7 +62,7 @@ pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
     Ok(cases)
 }
 
-/// The mesh in metres with z up, taken apart into convex parts.
+/// The mesh in metres with z up, as a shell.
 fn solid(folder: &Path, entry: &Entry) -> Result<Loaded> {
     let mesh = read_mesh(&folder.join(&entry.file))?;
     let turn = |[x, y, z]: [f32; 3]| match entry.up_axis.as_str() {
@@ -78,7 +74,6 @@ fn solid(folder: &Path, entry: &Entry) -> Result<Loaded> {
         _ => [x, y, z],
     };
     let vertices = mesh.vertices.iter().map(|v| turn(v.map(|x| x * entry.scale_to_m))).collect();
-    let (solid, filling) = Solid::take_apart(vertices, mesh.triangles);
-    let (name, category) = (entry.name.clone(), entry.category.clone());
-    Ok(Loaded { name, category, solid: solid.into(), filling: filling.into() })
+    let solid = Solid::shell(vertices, mesh.triangles).into();
+    Ok(Loaded { name: entry.name.clone(), category: entry.category.clone(), solid })
 }

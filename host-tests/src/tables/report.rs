@@ -39,9 +39,10 @@ pub fn summary(rows: &[Row]) -> String {
     let mut text = String::from(
         "| profile | pairs | found | success | robust | top 10 | rejected | seconds, median |\n|---|--:|--:|--:|--:|--:|--:|--:|\n",
     );
+    let mut notes = String::new();
     for profile in profiles {
-        let (fits, rest): (Vec<&Row>, Vec<&Row>) =
-            rows.iter().filter(|row| row.profile == profile).partition(|row| row.fits);
+        let rows: Vec<&Row> = rows.iter().filter(|row| row.profile == profile).collect();
+        let [fits, doubtful, rest] = by_fit(&rows);
         let count =
             |holds: &dyn Fn(&Row) -> bool| wilson(fits.iter().filter(|row| holds(row)).count(), fits.len());
         let rejected = rest.iter().filter(|row| row.rejection.is_some()).count();
@@ -56,8 +57,25 @@ pub fn summary(rows: &[Row]) -> String {
             count(&|row| row.succeeds_within(10)),
             wilson(rejected, rest.len()),
         );
+        if !doubtful.is_empty() {
+            let hang = doubtful.iter().filter(|row| row.first().is_some_and(Outcome::success)).count();
+            let _ = writeln!(
+                notes,
+                "For {} more pairs a search by trial and error found no pose that hangs; of `{profile}`'s best poses {hang} do.\n",
+                doubtful.len(),
+            );
+        }
     }
-    text + "\n"
+    text + "\n" + &notes
+}
+
+/// The pairs that fit, those that may, and those that cannot hang.
+fn by_fit<'r>(rows: &[&'r Row]) -> [Vec<&'r Row>; 3] {
+    let of = |fits, doubtful| {
+        let rows = rows.iter().filter(|row| row.fits == fits && row.doubtful == doubtful);
+        rows.copied().collect()
+    };
+    [of(true, false), of(false, true), of(false, false)]
 }
 
 /// All tables for the rows of one kind of pairs, profile beside profile.
@@ -67,7 +85,7 @@ pub fn tables(title: &str, rows: &[Row]) -> String {
     profiles.dedup();
     for profile in profiles {
         let rows: Vec<&Row> = rows.iter().filter(|row| row.profile == profile).collect();
-        let (fits, rest): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(|row| row.fits);
+        let [fits, _, rest] = by_fit(&rows);
         let _ = writeln!(text, "### Profile `{profile}`\n");
         text += &by("object", &fits, |row| &row.object);
         text += &by("supporter", &fits, |row| &row.supporter);

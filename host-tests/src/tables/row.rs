@@ -15,8 +15,11 @@ pub struct Row {
     pub object: String,
     /// Kind of the supporter.
     pub supporter: String,
-    /// Whether the pair can hang, by geometry or by the manifest.
+    /// Whether the pair can hang, by geometry or because a search found a pose.
     pub fits: bool,
+    /// Whether it may yet hang though the search found no pose.
+    #[serde(default)]
+    pub doubtful: bool,
     /// Why nothing was predicted, if nothing was.
     pub rejection: Option<String>,
     /// Seconds from the models' inputs to the poses, one thread.

@@ -1,17 +1,18 @@
 //! Works through the cases on both cores, and writes each row as it comes.
 
-use super::case::Case;
+use super::case::{Case, Fit};
 use super::row::{Failure, Outcome, Row};
+use super::search::finds_a_pose;
 use crate::gallery;
-use crate::judge::{Bullet, Judge, Limits, Ode, Scene};
+use crate::judge::{Bullet, Judge, Limits, Ode, Scene, World};
 use hangpose::geometry::Mesh;
 use hangpose::hanging::HangingPose;
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses, sample_supporter};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::io::{BufRead, Write};
 use std::path::Path;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, OnceLock};
 use std::time::Instant;
 
 /// Poses that are dropped at most, until one succeeds.
@@ -57,6 +58,12 @@ pub fn run(
     let mut rows = read(record)?;
     let done: HashSet<(String, String)> = rows.iter().map(|r| (r.pair.clone(), r.profile.clone())).collect();
     let file = Mutex::new(std::fs::File::options().create(true).append(true).open(record)?);
+    // Each pair is searched once for all profiles.
+    let mut searched: HashMap<&str, OnceLock<bool>> =
+        cases.iter().map(|case| (case.name.as_str(), OnceLock::new())).collect();
+    for row in &rows {
+        searched.insert(&row.pair, row.fits.into());
+    }
     let jobs: Vec<(&Case, &(String, Params))> = cases
         .iter()
         .flat_map(|case| profiles.iter().map(move |profile| (case, profile)))
@@ -67,7 +74,14 @@ pub fn run(
         for _ in 0..options.threads {
             scope.spawn(|| {
                 while let Some((case, (profile, params))) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let row = judge(case, profile, params, options);
+                    let fits = match case.fit {
+                        Fit::Yes => true,
+                        Fit::No => false,
+                        Fit::Unknown => *searched[case.name.as_str()]
+                            .get_or_init(|| finds_a_pose(&case.object, &case.supporter, case.seed)),
+                    };
+                    let doubtful = case.fit == Fit::Unknown && !fits;
+                    let row = Row { fits, doubtful, ..judge(case, profile, params, options) };
                     let line = serde_json::to_string(&row).expect("a row has no maps") + "\n";
                     let written = file.lock().expect("no thread panics").write_all(line.as_bytes());
                     if let Err(error) = written {
@@ -122,25 +136,25 @@ fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row 
     let seconds = start.elapsed().as_secs_f64();
 
     // A pair that cannot hang is judged by whether anything is predicted at all.
-    let poses = if case.fits { prediction.poses } else { &[] };
-    let scene = Scene::filled(&case.object, &case.supporter, &case.filling);
-    let drop = |judge: &dyn Judge, pose: &HangingPose| {
+    let poses = if case.fit == Fit::No { &[] } else { prediction.poses };
+    let scene = Scene::new(&case.object, &case.supporter);
+    let drop = |world: &mut World, pose: &HangingPose| {
         let start = Instant::now();
         // What runs through the supporter has failed, and is slow to shake free.
-        let mut world = judge.world(&scene);
         world.release(&pose.pose.cast());
         let penetration = world.penetration();
         if penetration > Limits::DEFINITION.penetration {
             return (Outcome::unclear(penetration), pose.pose);
         }
-        let verdict = judge.judge(&scene, &pose.pose);
+        let verdict = world.judge(&scene, &pose.pose);
         (Outcome::new(&verdict, start.elapsed().as_secs_f64()), verdict.figures.rest)
     };
     let (bullet, ode) = (Bullet::default(), Ode::default());
     let first: &dyn Judge = if options.engine == Engine::Ode { &ode } else { &bullet };
+    let mut world = first.world(&scene);
     let mut outcomes: Vec<Outcome> = Vec::new();
     for pose in poses {
-        let (outcome, rest) = drop(first, pose);
+        let (outcome, rest) = drop(&mut world, pose);
         let outcome = Outcome { said: pose.rest.as_ref().map(Into::into), ..outcome };
         if let Some(folder) = options.gallery.filter(|_| outcomes.is_empty()) {
             let word = outcome.failure().map_or("success", Failure::name);
@@ -154,13 +168,17 @@ fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row 
             break;
         }
     }
-    let second = poses.first().filter(|_| options.engine == Engine::Both).map(|pose| drop(&ode, pose).0);
+    let second = poses
+        .first()
+        .filter(|_| options.engine == Engine::Both)
+        .map(|pose| drop(&mut ode.world(&scene), pose).0);
     Row {
         pair: case.name.clone(),
         profile: profile.into(),
         object: case.object_kind.clone(),
         supporter: case.supporter_kind.clone(),
-        fits: case.fits,
+        fits: case.fit == Fit::Yes,
+        doubtful: false,
         rejection: prediction.rejection.map(|rejection| format!("{:?}", rejection.stage)),
         seconds,
         outcomes,
