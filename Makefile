@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench tables peer lib install deb samples header clean
+.PHONY: help setup demo test bench tables calibrate peer lib install deb samples header clean
 
 help:
 	@echo "make demo     hang the sample mug on the sample hook, let go and draw it"
@@ -7,6 +7,7 @@ help:
 	@echo "make bench    how long it takes, in how much memory"
 	@echo "make peer     the same beside another implementation: PEER=peer.py [MESHES=folder]"
 	@echo "make tables   drop 600 pairs in two engines: docs/RESULTS.md [MESHES=folder adds real ones]"
+	@echo "make calibrate  fit the constants of docs/PROBABILITY.md anew"
 	@echo "make lib      libhangpose.a and libhangpose.so for C and C++: build/link"
 	@echo "make install  put them where compilers look: [PREFIX=/usr/local] [DESTDIR=...]"
 	@echo "make deb      the same as a Debian package: build/libhangpose-dev_*.deb"
@@ -38,7 +39,7 @@ bench: setup
 	cargo bench --workspace
 
 tables: setup
-	cargo run --release -p host-tests --bin tables -- $(if $(MESHES),--meshes $(MESHES) --real-pairs 150)
+	cargo run --release -p host-tests --bin tables -- $(if $(MESHES),--meshes $(MESHES) --real-pairs 60)
 	@printf '\n## What each part brings\n\n160 made pairs of seed 2 and 40 that cannot hang, Bullet alone:\n\n' >> docs/RESULTS.md
 	cargo run --release -p host-tests --bin tables -- --summary --engine bullet --pairs 160 --seed 2 \
 		--profile default,sites-only,sites-settled,contacts-only,eight-attempts --json build/parts.jsonl >> docs/RESULTS.md
@@ -52,6 +53,11 @@ $(peer_python): bench/requirements.txt
 	python3 -m venv build/peer
 	$(peer_python) -m pip install --quiet --requirement bench/requirements.txt
 	@touch $@
+
+calibrate: setup $(peer_python)
+	@mkdir -p build
+	cargo run --release -p host-tests --bin tables -- --summary --all --engine bullet --profile default --pairs 330 --seed 100 --json build/calibration.jsonl
+	$(peer_python) bench/calibrate.py build/calibration.jsonl
 
 peer: setup $(peer_python)
 	cargo build --release -p hangpose

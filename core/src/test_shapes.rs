@@ -80,6 +80,17 @@ pub(crate) fn revolved(profile: &[[f32; 2]], columns: u32) -> Shape {
     })
 }
 
+/// A tube around the z axis.
+pub(crate) fn tube(inner: f32, outer: f32, length: f32) -> Shape {
+    let half = 0.5 * length;
+    let section = [[inner, half], [inner, -half], [outer, -half], [outer, half]];
+    band(4, 48, true, |i, j| {
+        let [radius, z] = section[i as usize];
+        let (sin, cos) = turn(j, 48);
+        [radius * cos, radius * sin, z]
+    })
+}
+
 /// A straight rod along the x axis around the origin.
 pub(crate) fn rod(length: f32, radius: f32) -> Shape {
     let half = 0.5 * length;

@@ -21,9 +21,10 @@ const BAR_LENGTH: f32 = 0.1;
 const TRIED_OBJECT: f32 = 0.5;
 /// and off that of a place of the supporter.
 const TRIED_SUPPORT: f32 = 0.3;
-/// What it takes off that there was no room on so many places.
-const NO_ROOM: f32 = 0.001;
+/// After so many places without room others that promise as much have their turn:
 const PATIENCE: usize = 8;
+/// so little is taken off.
+const NO_ROOM: f32 = 0.001;
 /// A contact is let go on at most so many places: what does not stay on these would hardly on others.
 const PER_CONTACT: u32 = 4;
 /// Poses that are made at most: where there is no room for so many, there is none.

@@ -463,6 +463,18 @@ fn what_is_let_go_stays_below_what_bears_it() {
 }
 
 #[test]
+fn a_long_hole_goes_over_a_sloping_peg() {
+    // Level, a hole of this length needs 8.5 mm of play on a peg that rises by 12 degrees; it has 2.4.
+    let object = test_shapes::tube(0.0062, 0.02, 0.04);
+    let scene = Scene { object, ..Scene::ring_on_tilted_peg(12.0) };
+    let (poses, stage) = scene.predict(&product());
+    assert_eq!(stage, None);
+    assert_hangs(&poses, &scene, &product());
+    let slope = |pose: &HangingPose| (pose.pose * Vector::z()).z.abs().asin().to_degrees();
+    assert!(poses.iter().all(|pose| (slope(pose) - 12.0).abs() < 4.0), "{}", slope(&poses[0]));
+}
+
+#[test]
 fn a_peg_beyond_the_friction_angle_lets_the_ring_slide() {
     let hangs = |degrees: f32, friction: f32| {
         !Scene::ring_on_tilted_peg(degrees).predict(&Params { friction, ..product() }).0.is_empty()

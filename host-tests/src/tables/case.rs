@@ -37,8 +37,8 @@ pub enum Fit {
 /// Sizes are drawn anew so often until a pair fits; then the pair is taken with another supporter.
 const TRIES: u64 = 30;
 
-/// `pairs` pairs that fit, every hangable kind of object and every kind of supporter in turn, and a quarter as many
-/// that cannot hang.
+/// `pairs` pairs that fit, every hangable kind of object and every kind of supporter in turn, and two thirds as
+/// many that cannot hang.
 pub fn made(pairs: usize, seed: u64) -> Vec<Case> {
     let kinds =
         |is_hangable| OBJECTS.iter().filter(move |kind| kind.is_hangable == is_hangable).collect::<Vec<_>>();
@@ -54,7 +54,7 @@ pub fn made(pairs: usize, seed: u64) -> Vec<Case> {
         );
         turn += 1;
     }
-    let unhangable_pairs = (0..pairs / 4).filter_map(|turn| {
+    let unhangable_pairs = (0..2 * pairs / 3).filter_map(|turn| {
         made_case(
             unhangable[turn % unhangable.len()],
             turn / unhangable.len() + turn,
@@ -65,6 +65,30 @@ pub fn made(pairs: usize, seed: u64) -> Vec<Case> {
     });
     cases.extend(unhangable_pairs);
     cases
+}
+
+/// Objects and supporters that go together only, or also, with contacts on both sides of the centre of mass.
+const SEVERAL: [(&str, &str); 6] = [
+    ("goblet", "glass rack"),
+    ("goblet", "fork"),
+    ("clothes hanger", "rail"),
+    ("basket", "fork"),
+    ("racquet", "fork"),
+    ("cap", "double hook"),
+];
+
+/// At most `pairs` pairs that fit and bear, or may bear, on several contacts.
+pub fn several(pairs: usize, seed: u64) -> Vec<Case> {
+    let each = pairs.div_ceil(SEVERAL.len());
+    let of = |(object, supporter): (&str, &str)| {
+        let object = OBJECTS.iter().find(|kind| kind.name == object).expect("a kind of object");
+        let supporter =
+            SUPPORTERS.iter().position(|kind| kind.name == supporter).expect("a kind of supporter");
+        let draws =
+            (0..each as u64 * TRIES).filter_map(move |draw| made_case(object, supporter, seed, draw, true));
+        draws.take(each)
+    };
+    SEVERAL.into_iter().flat_map(of).collect()
 }
 
 /// The pair with these sizes, if it fits as asked.
