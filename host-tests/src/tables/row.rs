@@ -178,7 +178,7 @@ impl Failure {
         match self {
             Self::NoSite => "more candidates: smaller clusters of sites, contacts closer together, more yaws",
             Self::NoMatch => "test the real section against the hole; more yaws; let more poses go",
-            Self::Penetration => "a finer distance field for what is thinner than its voxels",
+            Self::Penetration => "surface between the cloud's points: thin bars are seen at few of them",
             Self::SlidOff => "a margin that sees how far a body slides before it leaves",
             Self::RotatedOff => "a probability that weighs balances on one contact less",
             Self::Wedged => "prefer openings with more play",
