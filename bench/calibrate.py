@@ -14,7 +14,7 @@ MOST_CLEARANCE_MM = 1.0
 
 
 def poses(path):
-    """What the predictor said of each pose, and whether it hangs."""
+    """What the predictor said of each pose, whether it hangs, and whether robustly."""
     with open(path) as file:
         rows = [json.loads(line) for line in file]
     for row in rows:
@@ -26,18 +26,22 @@ def poses(path):
                 min(said["escape_ratio"], MOST_RATIO),
                 min(said["clearance"] * 1000.0, MOST_CLEARANCE_MM),
             ]
-            yield features, hangs, said["probability"]
+            yield features, hangs, hangs and outcome["robust"], said["probability"]
+
+
+def fit(name, features, outcomes):
+    """A regression on what became of the poses. Hardly regularised, without scaling: it is the formula as it stands."""
+    model = LogisticRegression(C=10.0, max_iter=1000).fit(features, outcomes)
+    constants = [model.intercept_[0], *model.coef_[0]]
+    print(f"{name}, {100 * outcomes.mean():.1f} % of {len(outcomes)}: " + ", ".join(f"{c:.2f}" for c in constants))
+    return model.predict_proba(features)[:, 1]
 
 
 def main():
-    features, hangs, said = (np.array(column) for column in zip(*poses(sys.argv[1])))
-    # Hardly regularised, without scaling: the constants are of the formula as it stands.
-    model = LogisticRegression(C=10.0, max_iter=1000).fit(features, hangs)
-    fitted = model.predict_proba(features)[:, 1]
-    print(f"{len(hangs)} poses, {100 * hangs.mean():.1f} % hang")
-    for name, constant in zip(["per radian", "per ratio", "per mm"], model.coef_[0]):
-        print(f"{name:10}  {constant:6.2f}")
-    print(f"constant    {model.intercept_[0]:6.2f}")
+    features, hangs, robust, said = (np.array(column) for column in zip(*poses(sys.argv[1])))
+    print("constant, per radian, per ratio, per mm")
+    fitted = fit("hangs", features, hangs)
+    fit("robust", features, robust)
     for name, probability in [("as it is", said), ("fitted", fitted)]:
         print(f"Brier score, {name}: {np.mean((probability - hangs) ** 2):.4f}")
     for low, high in [(0.0, 0.5), (0.5, 0.8), (0.8, 0.9), (0.9, 0.95), (0.95, 0.975), (0.975, 1.0)]:

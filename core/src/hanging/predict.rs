@@ -200,7 +200,9 @@ pub fn predict<'p>(
                     params.up(),
                     &mut arena,
                 )?;
-                settling.search(&mut candidates, &mut best, &mut meter)
+                let result = settling.search(&mut candidates, &mut best, &mut meter);
+                (settling.counts.candidates, settling.counts.clear) = (candidates.made, candidates.clear);
+                result
             }
         };
         stop = stop.or(result.err());

@@ -63,17 +63,6 @@ impl Settling<'_> {
         poses: &mut Best<HangingPose>,
         meter: &mut Meter,
     ) -> Result<(), Stop> {
-        let result = self.search_among(candidates, poses, meter);
-        (self.counts.candidates, self.counts.clear) = (candidates.made, candidates.clear);
-        result
-    }
-
-    fn search_among(
-        &mut self,
-        candidates: &mut CandidateSearch,
-        poses: &mut Best<HangingPose>,
-        meter: &mut Meter,
-    ) -> Result<(), Stop> {
         if !self.params.settle {
             while let Some(candidate) = candidates.next(meter)? {
                 // They come in order.
