@@ -14,7 +14,8 @@ struct Arguments {
     /// Profiles, with commas between them.
     #[arg(long, value_delimiter = ',', default_value = "paper,default")]
     profile: Vec<Profile>,
-    /// Pairs that fit, made by the shape library; two thirds as many that cannot hang, and a tenth as many on several contacts, come on top.
+    /// Pairs that fit, made by the shape library; two thirds as many that cannot hang, and a fifteenth as many on several contacts,
+    /// come on top.
     #[arg(long, default_value_t = 600)]
     pairs: usize,
     /// Seed of the sizes.
@@ -117,7 +118,7 @@ fn main() -> Result<()> {
         })
     };
     let made = work(&case::made(arguments.pairs, arguments.seed), arguments.engine)?;
-    let several = work(&case::several(arguments.pairs / 10, arguments.seed), arguments.engine)?;
+    let several = work(&case::several(arguments.pairs / 15, arguments.seed), arguments.engine)?;
     let real = match &arguments.meshes {
         // ODE takes minutes for a scan's thousands of triangles against those of another.
         Some(folder) => {
