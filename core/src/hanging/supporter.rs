@@ -4,7 +4,7 @@ use super::AnalysisError;
 use super::support_contact::{self, SupportContact};
 use super::supportability::{self, SupportSite, Supportability, SupportabilityCounts};
 use crate::geometry::{Cloud, PointTree, Vector};
-use crate::mechanics::{Support, choose_representatives};
+use crate::mechanics::{Patch, Support, fit_patches};
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::{Candidates, Params};
@@ -20,9 +20,8 @@ const UNIT_LENGTH: f32 = 1e-3;
 #[derive(Clone, Copy)]
 pub struct Supporter<'m> {
     tree: PointTree<'m>,
-    point_normals: &'m [Vector],
-    disc: f32,
-    disc_shares: &'m [u8],
+    patches: &'m [Patch],
+    patch_reach: f32,
     contacts: &'m [SupportContact],
     sites: &'m [SupportSite],
     normals: NormalCounts,
@@ -47,11 +46,11 @@ impl<'m> Supporter<'m> {
         let model = PointTree::bytes(points)
             .saturating_add(array_bytes::<SupportSite>(supportability::MAX_SITES))
             .saturating_add(array_bytes::<SupportContact>(support_contact::MAX_CONTACTS))
-            .saturating_add(array_bytes::<Vector>(points))
-            .saturating_add(array_bytes::<u8>(points));
+            .saturating_add(array_bytes::<Patch>(points));
         let scratch = larger(
             PointTree::scratch_bytes(points),
-            array_bytes::<Vector>(points).saturating_add(larger(
+            // In the tree's order, and in the cloud's.
+            array_bytes::<Vector>(points).saturating_mul(2).saturating_add(larger(
                 normals::scratch_bytes(points),
                 larger(supportability::scratch_bytes(points), array_bytes::<u8>(points)),
             )),
@@ -75,10 +74,10 @@ impl<'m> Supporter<'m> {
         let tree = PointTree::build(points, &mut arena)?;
         let sites = arena.slice::<SupportSite>(supportability::MAX_SITES)?;
 
-        let in_tree_order = arena.slice::<Vector>(points.len())?;
-        let disc_shares = arena.slice::<u8>(points.len())?;
+        let patches = arena.slice::<Patch>(points.len())?;
         let contacts = arena.slice::<SupportContact>(support_contact::MAX_CONTACTS)?;
         let mut scratch = arena.scratch();
+        let in_tree_order = scratch.slice::<Vector>(points.len())?;
         let mut normals = NormalCounts::default();
         if let Some(given) = cloud.normals() {
             for (normal, &index) in in_tree_order.iter_mut().zip(tree.order()) {
@@ -96,11 +95,11 @@ impl<'m> Supporter<'m> {
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
 
         let mut counts = SupportabilityCounts::default();
-        let (mut site_count, mut contact_count, mut disc) = (0, 0, 0.0);
+        let (mut site_count, mut contact_count, mut patch_reach) = (0, 0, 0.0);
         let found;
         if params.settle || params.candidates == Candidates::Contacts {
             let covered = scratch.scratch().slice::<u8>(points.len())?;
-            disc = choose_representatives(&tree, in_tree_order, disc_shares, covered);
+            patch_reach = fit_patches(&tree, in_tree_order, patches, covered);
         }
         match params.candidates {
             Candidates::Sites => {
@@ -122,19 +121,13 @@ impl<'m> Supporter<'m> {
             return Err(AnalysisError::Cancelled);
         }
         let (sites, contacts) = (&sites[..site_count], &contacts[..contact_count]);
-        let point_normals = in_tree_order;
         let work = meter.work;
-        Ok(Self { tree, point_normals, disc, disc_shares, contacts, sites, normals, counts, work, stopped })
+        Ok(Self { tree, patches, patch_reach, contacts, sites, normals, counts, work, stopped })
     }
 
     /// The supporter as mechanics sees it.
     pub(super) fn support(&self) -> Support<'_> {
-        Support {
-            tree: &self.tree,
-            normals: self.point_normals,
-            disc_shares: self.disc_shares,
-            disc: self.disc,
-        }
+        Support { tree: &self.tree, patches: self.patches, reach: self.patch_reach }
     }
 
     /// Where something can lie on the supporter: [`Candidates::Contacts`].

@@ -1,5 +1,6 @@
 //! Whether a pose keeps the object off the supporter.
 
+use super::contact::nearest_on_patch;
 use super::{Body, Support};
 use crate::geometry::{Point, Pose};
 use crate::monitor::{Meter, Stop};
@@ -26,7 +27,7 @@ pub(crate) fn is_off_surface(
     clearance: f32,
     meter: &mut Meter,
 ) -> Result<bool, Stop> {
-    let (field, surface, thin) = (scene.0.field, scene.0.surface, 0.5 * scene.1.disc);
+    let (field, surface, thin) = (scene.0.field, scene.0.surface, 0.5 * scene.1.reach);
     let greatest = clearance.max(thin);
     let is_off = |point: &Point, radius: f32| !surface.is_within(point, radius + greatest);
     let is_point_off = |point: &Point| {
@@ -41,7 +42,10 @@ pub(crate) fn is_off_surface(
 /// The field is farther off than its error, in voxels, only where it overlooks something.
 const OVERLOOKED: f32 = 0.3;
 
-/// The first point of the supporter of which `is_point_off`, asked in object coordinates, is not true. Points that are farther than
+/// A patch that is deeper in the body than this, metres, is seen to run through it; less may be what flat patches are off on what is round.
+const DEEP: f32 = 0.001;
+
+/// The first point of the supporter of which `is_point_off`, asked in object coordinates, is not true, or whose patch is deep in the body. Points that are farther than
 /// `distance` from a ball around the body are off, and so is everything within a radius of a point of which `is_off` says so.
 fn first(
     (body, support): (&Body, &Support),
@@ -52,6 +56,15 @@ fn first(
     meter: &mut Meter,
 ) -> Result<Option<Point>, Stop> {
     let to_object = pose.inverse();
+    let rotation = pose.rotation.to_rotation_matrix();
+    let is_deep = |index: usize| {
+        let (patch, at) = (&support.patches[index], to_object * support.tree.points()[index]);
+        body.field.sample_near(&at).is_ok_and(|(gap, gradient)| {
+            let gradient = rotation * gradient;
+            gap - patch.fall(&gradient) < -DEEP
+                && nearest_on_patch(body, patch, &rotation, (at, gap, gradient)).gap < -DEEP
+        })
+    };
     let (mut found, mut queries) = (None, 0);
     support.tree.bvh().descend(|_, node| {
         if found.is_some() {
@@ -65,8 +78,13 @@ fn first(
         }
         if let Some(items) = node.items() {
             queries += items.len();
-            let mut points = support.tree.points()[items].iter();
-            found = points.find(|point| !is_point_off(&(to_object * *point))).copied();
+            let points = support.tree.points();
+            let patches = items.clone().filter(|&index| !support.patches[index].is_empty());
+            found = items
+                .clone()
+                .find(|&index| !is_point_off(&(to_object * points[index])))
+                .or_else(|| patches.into_iter().find(|&index| is_deep(index)))
+                .map(|index| points[index]);
         }
         found.is_none()
     });

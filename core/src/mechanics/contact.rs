@@ -2,11 +2,13 @@
 
 use super::body::State;
 use super::odometer::Odometer;
+use super::patch::Patch;
 use super::{Body, Support};
 use crate::geometry::{Point, Vector};
 use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
 use heapless::Vec;
+use nalgebra::Rotation3;
 
 /// Contacts solved for at once, at most; a rigid body needs no more than a handful.
 pub(crate) const MOST: usize = 12;
@@ -90,7 +92,7 @@ impl<'s> Neighbourhood<'s> {
             if body.is_beyond(&centre, limit) || body.field.distance(&centre) > limit {
                 return false;
             }
-            for index in node.items().into_iter().flatten().filter(|&i| support.disc_shares[i] > 0) {
+            for index in node.items().into_iter().flatten().filter(|&i| !support.patches[i].is_empty()) {
                 let radius = self.odometer.radius(state, &support.tree.points()[index]) + surroundings;
                 self.near[self.count] = Near { index: index as u32, radius, sleeps_until: -1.0 };
                 self.count += 1;
@@ -127,7 +129,7 @@ impl<'s> Neighbourhood<'s> {
         let closing = |speed: f32| (speed * horizon).min(CARRY + speed * time_step);
         let mut queries = 0;
         if self.odometer.reading(whole) > self.valid_until {
-            queries += self.gather(contacts, scene, state, margin + support.disc);
+            queries += self.gather(contacts, scene, state, margin + support.reach);
         }
         (self.carries, self.carried_until) = (CARRIES, self.odometer.reading(whole) + CARRY);
         contacts.clear();
@@ -142,29 +144,28 @@ impl<'s> Neighbourhood<'s> {
             let margin = margin + closing(state.velocity_at(&arm).norm());
             let at = body.centre + rotation.inverse_transform_vector(&arm);
             queries += 1;
+            let patch = &support.patches[index];
+            let sleep = |bound: f32| reading + (bound - patch.reach() - margin).max(0.0);
             let (gap, gradient) = match body.field.sample_near(&at) {
                 Ok(sample) => sample,
                 Err(bound) => {
-                    near.sleeps_until = reading + (bound - margin).max(0.0);
+                    near.sleeps_until = sleep(bound);
                     continue;
                 }
             };
-            // The rim of a disc comes closer than its centre, by no more than this.
-            let normal = rotation.inverse_transform_vector(&support.normals[index]);
-            let slope = gradient - normal * gradient.dot(&normal);
-            let disc = support.disc_at(index);
-            let least = gap - disc * slope.norm();
-            if least > margin {
-                near.sleeps_until = reading + least - margin;
+            // The rim of a patch comes closer than its point, by about this.
+            let gradient = rotation * gradient;
+            if gap - patch.fall(&gradient) > margin {
+                near.sleeps_until = sleep(gap);
                 continue;
             }
             queries += 1;
-            let (at, gap, gradient) = nearest_on_disc(body, at, gap, gradient, slope, disc);
-            if gap > margin {
-                near.sleeps_until = reading + gap - margin;
+            let nearest = nearest_on_patch(body, patch, &rotation, (at, gap, gradient));
+            if nearest.gap > margin {
                 continue;
             }
-            let normal = -(rotation * gradient);
+            let Nearest { at, gap, .. } = nearest;
+            let normal = patch.push(-nearest.gradient, &nearest.step);
             let anchor = at - body.centre;
             let position = state.centre + rotation * anchor;
             let offset = gap - position.coords.dot(&normal);
@@ -179,22 +180,35 @@ const CARRIES: u8 = 1;
 /// or when any point of the body may have moved farther than this, metres.
 const CARRY: f32 = 0.003;
 
-/// The point of the disc around `at` that is nearest to, or deepest in, the body, with the gap and gradient there.
-fn nearest_on_disc(
-    body: &Body,
+/// Where a patch is nearest to, or deepest in, the body.
+pub(super) struct Nearest {
+    /// In object coordinates.
     at: Point,
-    gap: f32,
+    /// From the patch's point, in supporter coordinates.
+    step: Vector,
+    /// Between the surfaces, metres, and its gradient in supporter coordinates.
+    pub(super) gap: f32,
     gradient: Vector,
-    slope: Vector,
-    radius: f32,
-) -> (Point, f32, Vector) {
+}
+
+/// Looks for that place from the patch's point, given in object coordinates, with the gap and the gradient there, in supporter
+/// coordinates; `rotation` is the object's.
+pub(super) fn nearest_on_patch(
+    body: &Body,
+    patch: &Patch,
+    rotation: &Rotation3<f32>,
+    (at, gap, gradient): (Point, f32, Vector),
+) -> Nearest {
     /// Bodies are about this round where they touch, metres: then the foot of the perpendicular is at the end of the step.
     const ROUNDNESS: f32 = 0.002;
-    let step = slope * -(gap.max(0.0) + ROUNDNESS);
-    let length = step.norm();
-    let step = if length > radius { step * (radius / length) } else { step };
-    let (there, there_gradient) = body.field.sample(&(at + step));
-    if there < gap { (at + step, there, there_gradient) } else { (at, gap, gradient) }
+    let step = patch.step_towards(&(gradient * -(gap.max(0.0) + ROUNDNESS)));
+    let there = at + rotation.inverse_transform_vector(&step);
+    let (there_gap, there_gradient) = body.field.sample(&there);
+    if there_gap < gap {
+        Nearest { at: there, step, gap: there_gap, gradient: rotation * there_gradient }
+    } else {
+        Nearest { at, step: Vector::zeros(), gap, gradient }
+    }
 }
 
 /// Contacts closer to each other than this, metres, and with similar normals are one.

@@ -71,6 +71,9 @@ pub(crate) struct Firmness {
 /// How fast gravity tilts, rad/s: slowly against how fast things fall, so that the angle at which it leaves is the angle at which
 /// it began to.
 const RATE: f32 = 2.5;
+/// Friction is taken to be so much less while gravity tilts: what tilts at once, as when a robot stops, swings as far again beyond, and
+/// what would hold it in the middle of the swing lets it slip at the end.
+const SLIPPERY: f32 = 0.7;
 /// Without contact for so long, seconds, it has left.
 const GONE: f32 = 0.1;
 
@@ -107,13 +110,14 @@ pub(crate) fn firmness(
     }
     let lever = if weight > 0.0 { (start.centre.coords - place / weight).norm() } else { 0.0 };
 
+    let tilting = Settings::damped(SLIPPERY * friction);
     let ahead = horizontal(down);
     let mut margin = Margin::default();
     let (mut escape, mut highest) = (f32::INFINITY, 0.0_f32);
     for (k, tilt) in margin.tilts.iter_mut().enumerate() {
         let angle = core::f32::consts::TAU * k as f32 / DIRECTIONS as f32;
         let across = rotate_about(-down, angle, ahead);
-        let motion = Motion::new(scene, start, settings, near);
+        let motion = Motion::new(scene, start, tilting, near);
         let (held, rise, left) = tilt_until_it_leaves(motion, body, down, &across, meter)?;
         *tilt = held;
         highest = highest.max(rise);

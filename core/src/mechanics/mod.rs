@@ -1,7 +1,7 @@
 //! What gravity does to an object that is let go: contact, friction, rest, and how firmly it stays.
 //!
 //! One rigid body against a supporter that stands still. The body is its signed distance field, the supporter its
-//! points, each a small disc of surface; a step solves for the impulses at their contacts.
+//! points, each a small patch of surface; a step solves for the impulses at their contacts.
 
 mod body;
 mod clearance;
@@ -9,6 +9,7 @@ mod contact;
 mod margin;
 mod motion;
 mod odometer;
+mod patch;
 mod release;
 mod settle;
 mod solver;
@@ -22,10 +23,11 @@ pub(crate) use contact::Near;
 pub use margin::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
 pub(crate) use margin::{Firmness, firmness};
 pub(crate) use motion::Settings;
+pub(crate) use patch::Patch;
 pub(crate) use release::release_pose;
 pub use settle::Fate;
 pub(crate) use settle::{comes_free, settle};
-pub(crate) use support::{Support, choose_representatives};
+pub(crate) use support::{Support, fit_patches};
 
 /// Standard gravity, m/s².
 pub const GRAVITY: f32 = 9.81;
