@@ -5,7 +5,7 @@ use super::{Body, Support};
 use crate::geometry::{Point, Pose};
 use crate::monitor::{Meter, Stop};
 
-/// A point of the supporter that is not farther than `clearance` metres from the object at `pose`, if there is one.
+/// A place of the supporter that is not farther than `clearance` metres from the object at `pose`, or that is deep in it, if there is one.
 pub(crate) fn first_within(
     scene: (&Body, &Support),
     pose: &Pose,
@@ -19,8 +19,9 @@ pub(crate) fn first_within(
     first(scene, pose, clearance, is_off, |point| is_off(point, 0.0), meter)
 }
 
-/// Whether every point of the supporter is farther than `clearance` metres from the object's surface, exactly. And it is not clear either where the field overlooks something thin, such as the strings of a racquet, that
-/// passes closer to a point of the supporter than the points are apart: it may run through between them.
+/// Whether every point of the supporter is farther than `clearance` metres from the object's surface, exactly. It is not clear either
+/// where the field overlooks something thin, such as the strings of a racquet, that passes closer to a point of the supporter than the
+/// points are apart: it may run through between them.
 pub(crate) fn is_off_surface(
     scene: (&Body, &Support),
     pose: &Pose,
@@ -42,11 +43,12 @@ pub(crate) fn is_off_surface(
 /// The field is farther off than its error, in voxels, only where it overlooks something.
 const OVERLOOKED: f32 = 0.3;
 
-/// A patch that is deeper in the body than this, metres, is seen to run through it; less may be what flat patches are off on what is round.
+/// A patch that is deeper in the body than this, metres, is seen to run through it; less may be what patches are off the surface.
 const DEEP: f32 = 0.001;
 
-/// The first point of the supporter of which `is_point_off`, asked in object coordinates, is not true, or whose patch is deep in the body. Points that are farther than
-/// `distance` from a ball around the body are off, and so is everything within a radius of a point of which `is_off` says so.
+/// The first point of the supporter of which `is_point_off`, asked in object coordinates, is not true, or the deepest place of a patch
+/// that is deep in the body. Points that are farther than `distance` from a ball around the body are off, and so is everything within a radius of a point of
+/// which `is_off` says so.
 fn first(
     (body, support): (&Body, &Support),
     pose: &Pose,
@@ -57,13 +59,16 @@ fn first(
 ) -> Result<Option<Point>, Stop> {
     let to_object = pose.inverse();
     let rotation = pose.rotation.to_rotation_matrix();
-    let is_deep = |index: usize| {
-        let (patch, at) = (&support.patches[index], to_object * support.tree.points()[index]);
-        body.field.sample_near(&at).is_ok_and(|(gap, gradient)| {
-            let gradient = rotation * gradient;
-            gap - patch.fall(&gradient) < -DEEP
-                && nearest_on_patch(body, patch, &rotation, (at, gap, gradient)).gap < -DEEP
-        })
+    let points = support.tree.points();
+    let deepest = |index: usize| {
+        let (patch, at) = (&support.patches[index], to_object * points[index]);
+        let (gap, gradient) = body.field.sample_near(&at).ok()?;
+        let gradient = rotation * gradient;
+        if patch.is_empty() || gap - patch.fall(&gradient) > -DEEP {
+            return None;
+        }
+        let nearest = nearest_on_patch(body, patch, &rotation, (at, gap, gradient));
+        (nearest.gap < -DEEP).then(|| points[index] + nearest.step)
     };
     let (mut found, mut queries) = (None, 0);
     support.tree.bvh().descend(|_, node| {
@@ -78,13 +83,9 @@ fn first(
         }
         if let Some(items) = node.items() {
             queries += items.len();
-            let points = support.tree.points();
-            let patches = items.clone().filter(|&index| !support.patches[index].is_empty());
-            found = items
-                .clone()
-                .find(|&index| !is_point_off(&(to_object * points[index])))
-                .or_else(|| patches.into_iter().find(|&index| is_deep(index)))
-                .map(|index| points[index]);
+            let is_near = |index: &usize| !is_point_off(&(to_object * points[*index]));
+            let near = items.clone().find(is_near).map(|index| points[index]);
+            found = near.or_else(|| items.clone().find_map(deepest));
         }
         found.is_none()
     });

@@ -185,7 +185,7 @@ pub(super) struct Nearest {
     /// In object coordinates.
     at: Point,
     /// From the patch's point, in supporter coordinates.
-    step: Vector,
+    pub(super) step: Vector,
     /// Between the surfaces, metres, and its gradient in supporter coordinates.
     pub(super) gap: f32,
     gradient: Vector,

@@ -16,10 +16,10 @@ pub const MAX_CONTACTS: usize = 8;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Margin {
-    /// How far gravity may tilt, radians, towards each of eight horizontal directions: the first is the supporter's x axis
-    /// (or its y axis, where gravity is along x, made perpendicular to gravity), the others follow counter-clockwise seen
-    /// from above. At most [`Margin::MOST_TILT`], where the search ends;
-    /// zero for directions that were not tried any more, because another is hopeless.
+    /// How far gravity may tilt, radians, with 70 % of the friction, towards each of eight horizontal directions: the first is the
+    /// supporter's x axis (or its y axis, where gravity is along x, made perpendicular to gravity), the others follow counter-clockwise
+    /// seen from above. At most [`Margin::MOST_TILT`], where the search ends; zero for directions that were not tried any more, because
+    /// another is hopeless.
     pub tilts: [f32; DIRECTIONS],
     /// The least rise of the centre of mass, metres, over the ways of escape that were found: what an escape costs over `m g`
     /// (escape energy: Dong and Pokorny, arXiv 2309.01224). An upper bound of the least that any escape costs, and the highest
