@@ -48,7 +48,7 @@
 #define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 312
 #define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 17
 #define HANGPOSE_SUPPORTER_BYTES_AT_LEAST 17408
-#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 181
+#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 224
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 43008
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 12
 #define HANGPOSE_PREDICT_BYTES_EACH_POSE 376
@@ -393,9 +393,9 @@ typedef struct hangpose_supporter_contact {
 
 // By how much an object stays up. A part of hangpose_pose.
 typedef struct hangpose_margin {
-  // How far gravity may tilt, radians, towards each of eight horizontal directions: the first is the supporter's x axis
-  // (or its y axis, where gravity is along x, made perpendicular to gravity), the others follow counter-clockwise seen
-  // from above.
+  // How far gravity may tilt, radians, with 70 % of the friction, towards each of eight horizontal directions: the first is the
+  // supporter's x axis (or its y axis, where gravity is along x, made perpendicular to gravity), the others follow
+  // counter-clockwise seen from above.
   float tilts[HANGPOSE_DIRECTIONS];
   // The least of the tilts, radians.
   float least_tilt;

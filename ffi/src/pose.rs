@@ -25,9 +25,9 @@ pub struct hangpose_contact {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_margin {
-    /// How far gravity may tilt, radians, towards each of eight horizontal directions: the first is the supporter's x axis
-    /// (or its y axis, where gravity is along x, made perpendicular to gravity), the others follow counter-clockwise seen
-    /// from above.
+    /// How far gravity may tilt, radians, with 70 % of the friction, towards each of eight horizontal directions: the first is the
+    /// supporter's x axis (or its y axis, where gravity is along x, made perpendicular to gravity), the others follow
+    /// counter-clockwise seen from above.
     pub tilts: [f32; HANGPOSE_DIRECTIONS],
     /// The least of the tilts, radians.
     pub least_tilt: f32,
