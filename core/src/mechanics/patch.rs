@@ -4,8 +4,8 @@ use crate::geometry::{PointTree, Vector, any_perpendicular};
 use bytemuck::{Pod, Zeroable};
 use nalgebra::{Matrix2, Vector2};
 
-/// A rectangle square to the normal at a point of the supporter, and in which directions the surface goes straight on there. In
-/// supporter coordinates.
+/// A rectangle of the plane square to the normal at a point of the supporter, or of the cylinder there, and in which directions the
+/// surface goes straight on. In supporter coordinates.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Patch {
@@ -46,7 +46,7 @@ const RIM: f32 = 0.9;
 const LEAST_PUSH: f32 = 0.5;
 
 impl Patch {
-    /// The patch around a point, in tree order, of a cloud whose points are `apart` metres from each other.
+    /// The patch around a point, in tree order. Points are `spacing` metres from each other, those that have patches at least `apart`.
     pub(super) fn fit(tree: &PointTree, normals: &[Vector], index: usize, apart: f32, spacing: f32) -> Self {
         let half = HALF_EXTENT * apart;
         let (along, curvatures) = bending(tree, normals, index, half + spacing);
