@@ -29,7 +29,7 @@ pub(crate) fn is_off_surface(
     meter: &mut Meter,
 ) -> Result<bool, Stop> {
     let (field, surface, thin) = (scene.0.field, scene.0.surface, 0.5 * scene.1.reach);
-    let greatest = clearance.max(thin);
+    let greatest = clearance.max(scene.1.reach);
     let is_off = |point: &Point, radius: f32| !surface.is_within(point, radius + greatest);
     let is_point_off = |point: &Point| {
         let is_overlooked = || {
@@ -62,12 +62,10 @@ fn first(
     let points = support.tree.points();
     let deepest = |index: usize| {
         let (patch, at) = (&support.patches[index], to_object * points[index]);
-        let (gap, gradient) = body.field.sample_near(&at).ok()?;
-        let gradient = rotation * gradient;
-        if patch.is_empty() || gap - patch.fall(&gradient) > -DEEP {
+        if patch.is_empty() {
             return None;
         }
-        let nearest = nearest_on_patch(body, patch, &rotation, (at, gap, gradient));
+        let nearest = nearest_on_patch(body, patch, &rotation, &at, -DEEP).ok()?;
         (nearest.gap < -DEEP).then(|| points[index] + nearest.step)
     };
     let (mut found, mut queries) = (None, 0);

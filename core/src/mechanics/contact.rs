@@ -146,21 +146,14 @@ impl<'s> Neighbourhood<'s> {
             queries += 1;
             let patch = &support.patches[index];
             let sleep = |bound: f32| reading + (bound - patch.reach() - margin).max(0.0);
-            let (gap, gradient) = match body.field.sample_near(&at) {
-                Ok(sample) => sample,
+            let nearest = match nearest_on_patch(body, patch, &rotation, &at, margin) {
+                Ok(nearest) => nearest,
                 Err(bound) => {
                     near.sleeps_until = sleep(bound);
                     continue;
                 }
             };
-            // The rim of a patch comes closer than its point, by about this.
-            let gradient = rotation * gradient;
-            if gap - patch.fall(&gradient) > margin {
-                near.sleeps_until = sleep(gap);
-                continue;
-            }
             queries += 1;
-            let nearest = nearest_on_patch(body, patch, &rotation, (at, gap, gradient));
             if nearest.gap > margin {
                 continue;
             }
@@ -191,24 +184,56 @@ pub(super) struct Nearest {
     gradient: Vector,
 }
 
-/// Looks for that place from the patch's point, given in object coordinates, with the gap and the gradient there, in supporter
-/// coordinates; `rotation` is the object's.
+impl Nearest {
+    /// At a step from the patch's point, which is `at`, with the field there.
+    fn new(at: &Point, step: Vector, (gap, gradient): (f32, Vector), rotation: &Rotation3<f32>) -> Self {
+        let at = at + rotation.inverse_transform_vector(&step);
+        Self { at, step, gap, gradient: rotation * gradient }
+    }
+}
+
+/// Looks for that place from the patch's point `at`, in object coordinates; `rotation` is the object's. If no part of the patch is
+/// closer than `margin` metres, as far as the field can tell from there, says how far the point is at least.
 pub(super) fn nearest_on_patch(
     body: &Body,
     patch: &Patch,
     rotation: &Rotation3<f32>,
-    (at, gap, gradient): (Point, f32, Vector),
-) -> Nearest {
+    at: &Point,
+    margin: f32,
+) -> Result<Nearest, f32> {
     /// Bodies are about this round where they touch, metres: then the foot of the perpendicular is at the end of the step.
     const ROUNDNESS: f32 = 0.002;
-    let step = patch.step_towards(&(gradient * -(gap.max(0.0) + ROUNDNESS)));
-    let there = at + rotation.inverse_transform_vector(&step);
-    let (there_gap, there_gradient) = body.field.sample(&there);
-    if there_gap < gap {
-        Nearest { at: there, step, gap: there_gap, gradient: rotation * there_gradient }
-    } else {
-        Nearest { at, step: Vector::zeros(), gap, gradient }
+    let stations = || {
+        let all = patch.stations().filter_map(|station| {
+            let there = at + rotation.inverse_transform_vector(&station);
+            let (gap, gradient) = body.field.sample(&there);
+            if gap < 0.0 {
+                return Some(Nearest::new(at, station, (gap - patch.wire_radius(), gradient), rotation));
+            }
+            let step = patch.facing(station, &(rotation * gradient));
+            let there = at + rotation.inverse_transform_vector(&step);
+            Some(Nearest::new(at, step, body.field.sample_near(&there).ok()?, rotation))
+        });
+        all.min_by(|a, b| a.gap.total_cmp(&b.gap))
+    };
+    let start = match body.field.sample_near(at) {
+        Err(bound) if bound > patch.reach() + margin => return Err(bound),
+        // The field is exact close to the body only, and a long patch may pass it far from its point.
+        Err(bound) => stations().ok_or(bound)?,
+        Ok((gap, _)) if patch.is_all_around() => return stations().ok_or(gap),
+        Ok(sample) => Nearest::new(at, Vector::zeros(), sample, rotation),
+    };
+    if patch.is_all_around() {
+        return Ok(start);
     }
+    // The rim of a patch comes closer than its point, by about this.
+    if start.gap - patch.fall(&start.gradient) > margin {
+        return if start.step == Vector::zeros() { Err(start.gap) } else { Ok(start) };
+    }
+    let step = patch.step_towards(&(start.step - start.gradient * (start.gap.max(0.0) + ROUNDNESS)));
+    let there = at + rotation.inverse_transform_vector(&step);
+    let end = Nearest::new(at, step, body.field.sample(&there), rotation);
+    Ok(if end.gap < start.gap { end } else { start })
 }
 
 /// Contacts closer to each other than this, metres, and with similar normals are one.

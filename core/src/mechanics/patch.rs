@@ -1,8 +1,8 @@
 //! A piece of the supporter's surface: what is known of it around one of its points.
 
-use crate::geometry::{PointTree, Vector, any_perpendicular};
+use crate::geometry::{PointTree, Vector, any_perpendicular, unit_or};
 use bytemuck::{Pod, Zeroable};
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, Matrix3, Vector2};
 
 /// A rectangle of the plane square to the normal at a point of the supporter, or of the cylinder there, and in which directions the
 /// surface goes straight on. In supporter coordinates.
@@ -19,7 +19,7 @@ pub(crate) struct Patch {
     straight: u32,
     /// How much the normals turn across, where it is straight along, 1/m: there it is a piece of a cylinder.
     curvature: f32,
-    /// A bit for each of its sides where the surface ends: along, back, across, and back.
+    /// A bit for each of its sides where the surface ends: along, back, across, and back; and [`ALL_AROUND`].
     ends: u32,
 }
 
@@ -40,6 +40,17 @@ const LEAST_STRAIGHT: f32 = 0.2;
 /// The surface ends where it is not seen to go on beyond the patch by this part of the distance of the points.
 const BEYOND: f32 = 0.5;
 
+/// Points lie along a wire if the variance of their places across it, in both directions together, is below this share of that along it,
+const WIRE: f32 = 0.15;
+/// and if they are so many.
+const LEAST_WIRE: f32 = 4.0;
+/// The bit of a patch that goes all the way around a wire.
+const ALL_AROUND: u32 = 1 << 4;
+
+/// A patch whose half is longer than this, metres, where points are far apart, is looked at in more places than one: at these parts of it.
+const LONG: f32 = 0.0025;
+const STATIONS: [f32; 7] = [-1.0, -0.667, -0.333, 0.0, 0.333, 0.667, 1.0];
+
 /// What touches farther out than this part of the extent touches the patch's rim.
 const RIM: f32 = 0.9;
 /// Less than this of a push across the surface says nothing about where it pushes.
@@ -49,6 +60,9 @@ impl Patch {
     /// The patch around a point, in tree order. Points are `spacing` metres from each other, those that have patches at least `apart`.
     pub(super) fn fit(tree: &PointTree, normals: &[Vector], index: usize, apart: f32, spacing: f32) -> Self {
         let half = HALF_EXTENT * apart;
+        if let Some(wire) = Self::on_wire(tree, normals[index], index, half, half + spacing) {
+            return wire;
+        }
         let (along, curvatures) = bending(tree, normals, index, half + spacing);
         let mut patch = Self { normal: normals[index], along, ..Self::default() };
         let seen = patch.seen_extents(tree, normals, index, half + spacing);
@@ -73,6 +87,54 @@ impl Patch {
             patch.ends |= u32::from(is_end) << side;
         }
         patch
+    }
+
+    /// The patch around a point of a wire that is thinner than the points are apart: there are too few on each side of it to tell by their
+    /// normals how it is bent, but all together lie along it. `None` if within `radius` they do not.
+    fn on_wire(tree: &PointTree, normal: Vector, index: usize, half: f32, radius: f32) -> Option<Self> {
+        let place = tree.points()[index];
+        let offsets = |tell: &mut dyn FnMut(Vector)| {
+            tree.for_each_within(&place, radius, |other| tell(tree.points()[other.index as usize] - place));
+        };
+        let (mut count, mut sum, mut squares) = (0.0_f32, Vector::zeros(), Matrix3::zeros());
+        offsets(&mut |offset| {
+            count += 1.0;
+            sum += offset;
+            squares += offset * offset.transpose();
+        });
+        let mean = sum / count;
+        let spread = squares / count - mean * mean.transpose();
+        // The direction of greatest spread, by power iteration from the farthest offset's: a wire's is so much the greatest that few do.
+        let mut along = Vector::zeros();
+        offsets(&mut |offset| {
+            along = if offset.norm_squared() > along.norm_squared() { offset } else { along }
+        });
+        for _ in 0..4 {
+            along = unit_or(spread * along, along);
+        }
+        let length = along.dot(&(spread * along));
+        // Points on all sides of a cylinder are at its radius from the axis.
+        let thickness = spread.trace() - length;
+        if count < LEAST_WIRE || thickness > WIRE * length {
+            return None;
+        }
+        let along = unit_or(along - normal * along.dot(&normal), any_perpendicular(normal));
+        let mut seen = [0.0_f32; 2];
+        offsets(&mut |offset| {
+            let reach = offset.dot(&along);
+            seen = [seen[0].max(reach), seen[1].max(-reach)];
+        });
+        let wire_radius = libm::sqrtf(thickness).max(LEAST_EXTENT);
+        let extent = seen[0].min(seen[1]).min(half).max(LEAST_EXTENT);
+        let ends = seen.map(|seen| u32::from(seen < 1.5 * extent));
+        Some(Self {
+            normal,
+            along,
+            extents: [extent, wire_radius],
+            straight: 1,
+            curvature: 1.0 / wire_radius,
+            ends: ends[0] | ends[1] << 1 | ALL_AROUND,
+        })
     }
 
     /// How far the surface is seen to go on to each side, metres, up to about `radius`: a patch that reached over the rim of a bar's end
@@ -113,7 +175,33 @@ impl Patch {
     /// How far its corners are from its point, metres.
     pub(crate) fn reach(&self) -> f32 {
         let [a, b] = self.extents;
+        // The other side of a wire is its diameter away.
+        let b = if self.is_all_around() { 2.0 * b } else { b };
         libm::sqrtf(a * a + b * b)
+    }
+
+    /// Steps from its point to places along a patch that is long, on the axis of a wire; none if it is short.
+    pub(crate) fn stations(&self) -> impl Iterator<Item = Vector> + '_ {
+        let is_long = self.extents[0] > LONG;
+        let inwards = self.normal * self.wire_radius();
+        let places = STATIONS.into_iter().filter(move |_| is_long || self.is_all_around());
+        places.map(move |part| self.along * (part * self.extents[0]) - inwards)
+    }
+
+    /// The step from its point to where a wire faces what is the way of `-gradient` from a station; elsewhere the station itself.
+    pub(crate) fn facing(&self, station: Vector, gradient: &Vector) -> Vector {
+        let across = gradient - self.along * gradient.dot(&self.along);
+        station - unit_or(across, -self.normal) * self.wire_radius()
+    }
+
+    /// The radius of the wire, metres; 0 if it is none.
+    pub(crate) fn wire_radius(&self) -> f32 {
+        if self.is_all_around() { 1.0 / self.curvature } else { 0.0 }
+    }
+
+    /// Whether it is that of a wire, all around it.
+    pub(crate) fn is_all_around(&self) -> bool {
+        self.ends & ALL_AROUND != 0
     }
 
     /// By how much what grows as `gradient` says is less at the rim than at the point, at most.
