@@ -51,7 +51,7 @@
 #define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 224
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 43008
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 12
-#define HANGPOSE_PREDICT_BYTES_EACH_POSE 376
+#define HANGPOSE_PREDICT_BYTES_EACH_POSE 380
 
 // Version of the structs and functions in this header; another one than the library's is refused at run time, by
 // hangpose_params_init and hangpose_check_abi.
@@ -167,7 +167,7 @@ typedef struct hangpose_params {
   uint32_t voxels;
   // Poses that are let go at most; 0 to 10000.
   uint32_t settle_attempts;
-  // No more poses are let go when so many stay firmly, with a probability of 95 % or more; 0 to 10000.
+  // No more poses are let go when so many stay firmly, with a probability of 97.5 % or more; 0 to 10000.
   uint32_t firm_enough;
   // Poses that are less likely to hang than this are none; 0 to 1.
   float min_probability;
@@ -399,6 +399,9 @@ typedef struct hangpose_margin {
   float tilts[HANGPOSE_DIRECTIONS];
   // The least of the tilts, radians.
   float least_tilt;
+  // How long it stays, seconds, when gravity tilts by 21.8 degrees at once, towards where it survives the least tilt, and
+  // nothing but friction stops its swing; 1 if it is still there then, 0 if that was not tried, because some tilt is hopeless.
+  float jolt_time;
   // The least rise of the centre of mass, metres, over the ways of escape that were found, and the highest rise seen
   // where none was found.
   float escape_rise;

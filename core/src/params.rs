@@ -96,7 +96,7 @@ pub struct Params {
     pub voxels: usize,
     /// Poses that are let go at most.
     pub settle_attempts: usize,
-    /// No more poses are let go when so many stay firmly: with a probability of 95 % or more.
+    /// No more poses are let go when so many stay firmly: with a probability of 97.5 % or more.
     pub firm_enough: usize,
     /// Poses that are less likely to hang than this are none.
     pub min_probability: f32,

@@ -2,7 +2,7 @@
 
 use super::{Object, PredictError, Supporter, predict_bytes};
 use crate::geometry::Pose;
-use crate::mechanics::{Fate, Near, Settings, settle};
+use crate::mechanics::{Fate, Near, swing_out};
 use crate::memory::{Arena, Limits};
 use crate::monitor::{Meter, Monitor, Stop};
 use crate::params::Params;
@@ -16,7 +16,7 @@ pub struct LetGo {
     pub pose: Pose,
 }
 
-/// Lets the object go at `release`, object to supporter coordinates, and watches for three seconds at most; or says why the monitor
+/// Lets the object go at `release`, object to supporter coordinates, and watches for four seconds at most; or says why the monitor
 /// stopped that. `memory` is working memory of [`predict_bytes`](super::predict_bytes).
 pub fn let_go(
     object: &Object,
@@ -33,8 +33,7 @@ pub fn let_go(
     let limits = Limits { points, ..Limits::NONE };
     let mut arena = Arena::new(memory, predict_bytes(&limits))?;
     let near = arena.slice::<Near>(points)?;
-    let settings = Settings::damped(params.friction);
     let mut meter = Meter::new(monitor);
-    let settled = settle((&body, &support), release, &-params.up(), settings, near, &mut meter);
+    let settled = swing_out((&body, &support), release, &-params.up(), params.friction, near, &mut meter);
     Ok(settled.map(|settled| LetGo { fate: settled.fate, pose: settled.pose }))
 }

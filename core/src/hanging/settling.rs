@@ -6,7 +6,7 @@ use super::{HangingPose, probability};
 use crate::best::Best;
 use crate::geometry::Pose;
 use crate::mechanics::{
-    Body, Fate, Near, Settings, Support, comes_free, firmness, is_off_surface, release_pose, settle,
+    Body, Fate, Near, Settings, Settled, Support, comes_free, firmness, is_off_surface, release_pose, settle,
 };
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
@@ -51,9 +51,23 @@ pub(super) struct Settling<'a> {
 const WORTHLESS_TILT: f32 = 0.15;
 /// A release that comes closer to the supporter than this, metres, is as good as none: clouds are no more exact.
 const LEAST_GAP: f32 = 0.0001;
+/// What sinks by more than this, metres, from where it is let go to its rest, did not rest where it was let go.
+const MOST_SINKING: f32 = 0.01;
+/// So many places to let it go from are tried at most.
+const RELEASES: usize = 3;
 
 /// What was tried promises less; a rest takes off this share of it.
 const REST_SHARE: f32 = 0.6;
+
+/// Where to let the object go.
+struct Release {
+    /// Object to supporter.
+    pose: Pose,
+    /// How far it is off the supporter there, metres.
+    gap: f32,
+    /// From there to the rest, metres.
+    sinking: f32,
+}
 
 impl Settling<'_> {
     /// Lets the most promising candidates go until enough stay firmly, or offers them as they are if gravity is not to act.
@@ -138,30 +152,51 @@ impl Settling<'_> {
         self.counts.released += 1;
         let up = self.params.up();
         let friction = self.params.friction;
-        let settled = settle(scene, release, &-up, Settings::damped(friction), self.near, meter)?;
+        let settings = Settings::damped(friction);
+        let (settled, from) = self.find_release(release, settings, meter)?;
         match settled.fate {
             Fate::Rests => self.counts.at_rest += 1,
             Fate::RotatesOff => self.counts.rotated_off += 1,
             Fate::SlidesOff => self.counts.slid_off += 1,
             Fate::Moves => self.counts.moving += 1,
         }
-        if settled.fate != Fate::Rests {
-            return Ok(None);
-        }
-        let clearance = self.params.clearance;
-        let (pose, gap) = release_pose(scene, &settled.pose, clearance, &up, self.near, meter)?;
-        if gap < LEAST_GAP || !is_off_surface(scene, &pose, LEAST_GAP, meter)? {
-            return Ok(None);
-        }
-        if !comes_free(scene, &settled.pose, &-up, Settings::damped(friction), self.near, meter)? {
+        let Some(Release { pose, gap, sinking }) = from else { return Ok(None) };
+        if !comes_free(scene, &settled.pose, &-up, settings, self.near, meter)? {
             self.counts.wedged += 1;
             return Ok(None);
         }
-        let centre = &self.body.centre;
-        let sinking = up.dot(&(pose * centre - settled.pose * centre));
         let firm = firmness(scene, &settled.pose, &-up, friction, WORTHLESS_TILT, self.near, meter)?;
         let rest = Rest::new(settled.pose, sinking, gap, &firm);
         Ok(Some(HangingPose { pose, rest: Some(rest), matched: None }))
+    }
+
+    /// What becomes of the object at `start`, and, if it rests, where to let it go instead, off the supporter but close to that rest.
+    /// What does not come to rest close by from there either is not told to be let go there, but tried from where it comes to then.
+    fn find_release(
+        &mut self,
+        start: &Pose,
+        settings: Settings,
+        meter: &mut Meter,
+    ) -> Result<(Settled, Option<Release>), Stop> {
+        let scene = (self.body, self.support);
+        let (up, clearance) = (self.params.up(), self.params.clearance);
+        let mut settled = settle(scene, start, &-up, settings, self.near, meter)?;
+        for _ in 0..RELEASES {
+            if settled.fate != Fate::Rests {
+                break;
+            }
+            let (pose, gap) = release_pose(scene, &settled.pose, clearance, &up, self.near, meter)?;
+            if gap < LEAST_GAP || !is_off_surface(scene, &pose, LEAST_GAP, meter)? {
+                break;
+            }
+            settled = settle(scene, &pose, &-up, settings, self.near, meter)?;
+            let centre = &self.body.centre;
+            let sinking = up.dot(&(pose * centre - settled.pose * centre));
+            if settled.fate == Fate::Rests && sinking < MOST_SINKING {
+                return Ok((settled, Some(Release { pose, gap, sinking })));
+            }
+        }
+        Ok((settled, None))
     }
 }
 

@@ -21,6 +21,10 @@ pub struct Margin {
     /// seen from above. At most [`Margin::MOST_TILT`], where the search ends; zero for directions that were not tried any more, because
     /// another is hopeless.
     pub tilts: [f32; DIRECTIONS],
+    /// How long it stays, seconds, when gravity tilts by [`Margin::JOLT`] at once, towards where it survives the least tilt, and nothing
+    /// but friction stops its swing: as it does when a robot that carries the supporter starts or stops with 0.4 g.
+    /// [`Margin::MOST_JOLT_TIME`] if it is still there then; zero if that was not tried, because some tilt is hopeless.
+    pub jolt_time: f32,
     /// The least rise of the centre of mass, metres, over the ways of escape that were found: what an escape costs over `m g`
     /// (escape energy: Dong and Pokorny, arXiv 2309.01224). An upper bound of the least that any escape costs, and the highest
     /// rise seen where none was found.
@@ -37,6 +41,10 @@ pub struct Margin {
 impl Margin {
     /// Gravity is tilted up to this, radians.
     pub const MOST_TILT: f32 = 1.2;
+    /// A jolt tilts gravity by this, radians: 21.8 degrees, where friction of 0.4 ends.
+    pub const JOLT: f32 = 0.380_506;
+    /// It is watched for this long, seconds.
+    pub const MOST_JOLT_TIME: f32 = 1.0;
 
     /// The least of the tilts, radians.
     pub fn least_tilt(&self) -> f32 {
@@ -111,22 +119,28 @@ pub(crate) fn firmness(
     let lever = if weight > 0.0 { (start.centre.coords - place / weight).norm() } else { 0.0 };
 
     let tilting = Settings::damped(SLIPPERY * friction);
-    let ahead = horizontal(down);
     let mut margin = Margin::default();
     let (mut escape, mut highest) = (f32::INFINITY, 0.0_f32);
-    for (k, tilt) in margin.tilts.iter_mut().enumerate() {
-        let angle = core::f32::consts::TAU * k as f32 / DIRECTIONS as f32;
-        let across = rotate_about(-down, angle, ahead);
+    let (mut weakest, mut is_hopeless) = (0, false);
+    for k in 0..DIRECTIONS {
         let motion = Motion::new(scene, start, tilting, near);
-        let (held, rise, left) = tilt_until_it_leaves(motion, body, down, &across, meter)?;
-        *tilt = held;
+        let (held, rise, left) = tilt_until_it_leaves(motion, body, down, &towards(k, down), meter)?;
+        margin.tilts[k] = held;
         highest = highest.max(rise);
         if left {
             escape = escape.min(rise);
         }
-        if held < least {
+        if held < margin.tilts[weakest] {
+            weakest = k;
+        }
+        is_hopeless = held < least;
+        if is_hopeless {
             break;
         }
+    }
+    if !is_hopeless {
+        let motion = Motion::new(scene, start, Settings::undamped(friction), near);
+        margin.jolt_time = jolt_until_it_leaves(motion, body, down, &towards(weakest, down), meter)?;
     }
     margin.escape_rise = if escape.is_finite() { escape } else { highest };
     margin.escape_ratio = if lever > 0.0 { margin.escape_rise / lever } else { 0.0 };
@@ -135,11 +149,34 @@ pub(crate) fn firmness(
     Ok(Firmness { margin, contacts })
 }
 
-/// The horizontal direction from which the others are counted.
-fn horizontal(down: &Vector) -> Vector {
+/// The horizontal direction with this number: see [`Margin::tilts`].
+fn towards(direction: usize, down: &Vector) -> Vector {
     let axis = if down.x.abs() < 0.9 { Vector::x() } else { Vector::y() };
-    let level = axis - down * axis.dot(down);
-    level.normalize()
+    let first = (axis - down * axis.dot(down)).normalize();
+    rotate_about(-down, core::f32::consts::TAU * direction as f32 / DIRECTIONS as f32, first)
+}
+
+/// Watches whether the body leaves under a pull that goes on.
+struct Watch {
+    start: Point,
+    /// Steps without contact.
+    loose: usize,
+}
+
+impl Watch {
+    fn new(motion: &Motion) -> Self {
+        Self { start: motion.state.centre, loose: 0 }
+    }
+
+    /// How far the centre of mass has moved, and whether it has left: gravity is tilted by an angle with this cosine, along `pull`.
+    fn look(&mut self, motion: &Motion, body: &Body, pull: &Vector, cos: f32) -> (Vector, bool) {
+        let moved = motion.state.centre - self.start;
+        self.loose = if motion.touches { 0 } else { self.loose + 1 };
+        // The swing into the new direction is not a fall.
+        let swing = body.reach * (1.0 - cos);
+        let gone = (GONE / TIME_STEP) as usize;
+        (moved, self.loose > gone || pull.dot(&moved) > most_sinking(body) + swing)
+    }
 }
 
 /// How far gravity tilted towards `across` before the body left, radians, how high its centre of mass rose until then, and
@@ -151,26 +188,47 @@ fn tilt_until_it_leaves(
     across: &Vector,
     meter: &mut Meter,
 ) -> Result<(f32, f32, bool), Stop> {
-    let start = motion.state.centre;
+    let mut watch = Watch::new(&motion);
     let steps = (Margin::MOST_TILT / (RATE * TIME_STEP)) as usize;
-    let gone = (GONE / TIME_STEP) as usize;
-    let (mut held, mut highest, mut loose) = (0.0, 0.0_f32, 0);
+    let (mut held, mut highest) = (0.0, 0.0_f32);
     for step in 1..=steps {
         let angle = RATE * TIME_STEP * step as f32;
         let (sin, cos) = libm::sincosf(angle);
         let pull = down * cos + across * sin;
         motion.step(&(pull * GRAVITY), meter)?;
-        let moved = motion.state.centre - start;
-        loose = if motion.touches { 0 } else { loose + 1 };
+        let (moved, has_left) = watch.look(&motion, body, &pull, cos);
         if motion.touches {
             held = angle;
             highest = highest.max(-down.dot(&moved));
         }
-        // The swing into the new direction is not a fall.
-        let swing = body.reach * (1.0 - cos);
-        if loose > gone || pull.dot(&moved) > most_sinking(body) + swing {
+        if has_left {
             return Ok((held, highest, true));
         }
     }
-    Ok(if loose > 0 { (held, highest, true) } else { (Margin::MOST_TILT, highest, false) })
+    Ok(if watch.loose > 0 { (held, highest, true) } else { (Margin::MOST_TILT, highest, false) })
+}
+
+/// How long the body stays when gravity tilts towards `across` at once, seconds.
+fn jolt_until_it_leaves(
+    mut motion: Motion,
+    body: &Body,
+    down: &Vector,
+    across: &Vector,
+    meter: &mut Meter,
+) -> Result<f32, Stop> {
+    let mut watch = Watch::new(&motion);
+    let (sin, cos) = libm::sincosf(Margin::JOLT);
+    let pull = down * cos + across * sin;
+    let steps = (Margin::MOST_JOLT_TIME / TIME_STEP) as usize;
+    let mut held = 0.0;
+    for step in 1..=steps {
+        motion.step(&(pull * GRAVITY), meter)?;
+        if motion.touches {
+            held = TIME_STEP * step as f32;
+        }
+        if watch.look(&motion, body, &pull, cos).1 {
+            return Ok(held);
+        }
+    }
+    Ok(Margin::MOST_JOLT_TIME)
 }

@@ -26,7 +26,7 @@ pub(crate) use motion::Settings;
 pub(crate) use patch::Patch;
 pub(crate) use release::release_pose;
 pub use settle::Fate;
-pub(crate) use settle::{comes_free, settle};
+pub(crate) use settle::{Settled, comes_free, settle, swing_out};
 pub(crate) use support::{Support, fit_patches};
 
 /// Standard gravity, m/s².

@@ -23,6 +23,16 @@ impl Settings {
     pub(crate) fn damped(friction: f32) -> Self {
         Self { friction, drag: 2.0, spin_drag: 15.0 }
     }
+
+    /// Swings out as things do that rub and lose a little at each blow: found by what agrees with Bullet.
+    pub(crate) fn swinging(friction: f32) -> Self {
+        Self { friction, drag: 0.5, spin_drag: 3.0 }
+    }
+
+    /// Swings until friction stops it.
+    pub(crate) fn undamped(friction: f32) -> Self {
+        Self { friction, drag: 0.0, spin_drag: 0.0 }
+    }
 }
 
 /// Seconds a step. Contacts bear because of the gap that they may close in it, so that none is missed.

@@ -50,25 +50,58 @@ pub(crate) fn settle(
     near: &mut [Near],
     meter: &mut Meter,
 ) -> Result<Settled, Stop> {
-    let start = body.at(release);
-    let mut motion = Motion::new((body, support), start, settings, near);
+    let mut motion = Motion::new((body, support), body.at(release), settings, near);
+    let fate = follow(&mut motion, body, down, STEPS, meter)?.unwrap_or(Fate::Moves);
+    Ok(Settled { fate, pose: body.pose(&motion.state) })
+}
+
+/// So many steps a body may swing: four seconds.
+const SWINGING_STEPS: usize = 1000;
+/// Slower than this, metres per second of its centre of mass, it hangs then.
+const SLOW: f32 = 0.05;
+
+/// The same without what makes it rest sooner, as it is in truth: it swings out, or falls for that. At last it may still move a little.
+pub(crate) fn swing_out(
+    (body, support): (&Body, &Support),
+    release: &Pose,
+    down: &Vector,
+    friction: f32,
+    near: &mut [Near],
+    meter: &mut Meter,
+) -> Result<Settled, Stop> {
+    let settings = Settings::swinging(friction);
+    let mut motion = Motion::new((body, support), body.at(release), settings, near);
+    let fate = follow(&mut motion, body, down, SWINGING_STEPS, meter)?;
+    let hangs = motion.touches && motion.state.velocity.norm() < SLOW;
+    let fate = fate.unwrap_or(if hangs { Fate::Rests } else { Fate::Moves });
+    Ok(Settled { fate, pose: body.pose(&motion.state) })
+}
+
+/// Whether the body comes to rest or falls within so many steps.
+fn follow(
+    motion: &mut Motion,
+    body: &Body,
+    down: &Vector,
+    steps: usize,
+    meter: &mut Meter,
+) -> Result<Option<Fate>, Stop> {
+    let start = motion.state;
     let mut mark = start;
-    for step in 1..=STEPS {
+    for step in 1..=steps {
         motion.step(&(down * GRAVITY), meter)?;
         let state = &motion.state;
         if down.dot(&(state.centre - start.centre)) > most_sinking(body) {
             let turned = start.rotation.angle_to(&state.rotation);
-            let fate = if turned > TURNED { Fate::RotatesOff } else { Fate::SlidesOff };
-            return Ok(Settled { fate, pose: body.pose(state) });
+            return Ok(Some(if turned > TURNED { Fate::RotatesOff } else { Fate::SlidesOff }));
         }
         if step % WINDOW == 0 {
             if motion.touches && body.travel(&mark, state) < STILL {
-                return Ok(Settled { fate: Fate::Rests, pose: body.pose(state) });
+                return Ok(Some(Fate::Rests));
             }
             mark = *state;
         }
     }
-    Ok(Settled { fate: Fate::Moves, pose: body.pose(&motion.state) })
+    Ok(None)
 }
 
 /// It comes free when nothing bears on it any more and it has moved this far, metres,

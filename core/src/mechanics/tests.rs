@@ -239,6 +239,42 @@ fn a_patch_knows_the_bar_and_its_end() {
 }
 
 #[test]
+fn a_wire_is_known_by_the_line_of_its_points() {
+    // A wire of 1 mm along x, seen at a point every 6 mm, each on another side of it; the ring's own wire has 2 mm.
+    let around = |k: i32| (2.4 * k as f32).sin_cos();
+    let points = (-24..=24).map(|k| [0.006 * k as f32, 0.001 * around(k).0, 0.001 * around(k).1]);
+    let normals = (-24..=24).map(|k| [0.0, around(k).0, around(k).1]);
+    let thin_ring = test_shapes::torus(0.030, 0.002, 72, 24);
+    Scene::new(thin_ring, (points.collect(), normals.collect())).try_out(|lab| {
+        let middle =
+            lab.support.tree.points().iter().zip(lab.support.patches).filter(|(p, _)| p.x.abs() < 0.1);
+        for (point, patch) in middle {
+            let places: Vec<_> = patch.stations().map(|station| point + station).collect();
+            let [first, .., last] = places[..] else { panic!("a wire has stations") };
+            assert!((last - first).norm() > 0.006, "as far as to the next points: {first} to {last}");
+            for (place, station) in places.iter().zip(patch.stations()) {
+                assert!(place.coords.yz().norm() < 0.0002, "on the axis: {place}");
+                for side in [Vector::y(), -Vector::y(), Vector::z(), -Vector::z()] {
+                    let facing = point + patch.facing(station, &-side);
+                    assert!(
+                        (facing - place - side * 0.001).norm() < 0.0002,
+                        "{facing} from {place} to {side}"
+                    );
+                }
+            }
+        }
+        // Its axis along x, between two points of the wire: there it hangs, and the wire does not go through it.
+        let upright = |z: f32| Pose::from_parts(Translation3::new(0.003, 0.0, z), turned(Vector::y(), 90.0));
+        let top = 0.030 - 0.002 - 0.001;
+        let height = lab.rest(&upright(-top + 0.001), FRICTION) * lab.body.centre;
+        assert!((height.z + top).abs() < 0.0005, "{height}");
+        let (monitor, scene) = (Monitor::new(), (&lab.body, &lab.support));
+        let is_off = |z: f32| is_off_surface(scene, &upright(z), 0.0005, &mut Meter::new(&monitor)).unwrap();
+        assert!(is_off(-top + 0.001) && !is_off(-0.030) && is_off(-0.030 - 0.0045));
+    });
+}
+
+#[test]
 fn a_ring_slides_along_the_rod_beyond_the_friction_angle() {
     Scene::new(ring(), rod(Vector::x(), 0.3, 0.005)).try_out(|lab| {
         let rest = lab.rest(&on_rod(), FRICTION);
@@ -520,6 +556,20 @@ fn a_deep_hook_is_firmer_than_a_shallow_one() {
     assert!(margins.is_sorted_by(|a, b| both(a) < both(b)), "{margins:?}");
     assert!(none.escape_rise < shallow.escape_rise && shallow.escape_rise < deep.escape_rise);
     assert!(none.knock_speed < deep.knock_speed && none.centre_of_mass_radius < deep.centre_of_mass_radius);
+}
+
+#[test]
+fn a_jolt_shakes_off_what_hangs_close_to_the_end() {
+    // Friction would hold the ring anywhere on the level rod if the tilt came slowly. Its swing makes it slip.
+    Scene::new(ring(), rod(Vector::x(), 0.2, 0.005)).try_out(|lab| {
+        let mut margin_at = |x: f32| {
+            let rest = lab.rest(&(Pose::translation(x, 0.0, 0.0) * on_rod()), FRICTION);
+            lab.firmness(&rest).margin
+        };
+        let (middle, close) = (margin_at(0.0), margin_at(0.092));
+        assert_eq!(middle.jolt_time, Margin::MOST_JOLT_TIME, "{middle:?}");
+        assert!((0.05..0.8).contains(&close.jolt_time), "{close:?}");
+    });
 }
 
 #[test]

@@ -61,6 +61,9 @@ pub struct Said {
     pub probability: f32,
     /// Radians, in each direction.
     pub tilts: [f32; 8],
+    /// Seconds that it stays when jolted.
+    #[serde(default)]
+    pub jolt_time: f32,
     /// Metres per second.
     pub knock_speed: f32,
     /// The rise of an escape over the lever.
@@ -78,6 +81,7 @@ impl From<&Rest> for Said {
         Self {
             probability: rest.probability,
             tilts: rest.margin.tilts,
+            jolt_time: rest.margin.jolt_time,
             knock_speed: rest.margin.knock_speed,
             escape_ratio: rest.margin.escape_ratio,
             clearance: rest.clearance,
