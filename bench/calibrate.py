@@ -9,12 +9,11 @@ import sys
 import numpy as np
 from sklearn.linear_model import LogisticRegression
 
-MOST_RATIO = 0.6
 MOST_CLEARANCE_MM = 1.0
 
 
 def poses(path):
-    """What the predictor said of each pose, whether it hangs, and whether robustly."""
+    """What the predictor said of each pose, whether it hangs, and whether robustly, what that was said to be, and of which pair it is."""
     with open(path) as file:
         rows = [json.loads(line) for line in file]
     for row in rows:
@@ -22,11 +21,11 @@ def poses(path):
             said = outcome["said"]
             hangs = outcome["clear"] and outcome["holds"] and outcome["honest"]
             features = [
+                said["jolt_time"],
                 min(said["tilts"]),
-                min(said["escape_ratio"], MOST_RATIO),
                 min(said["clearance"] * 1000.0, MOST_CLEARANCE_MM),
             ]
-            yield features, hangs, hangs and outcome["robust"], said["probability"]
+            yield features, hangs, hangs and outcome["robust"], said["probability"], row["pair"]
 
 
 def fit(name, features, outcomes):
@@ -38,12 +37,17 @@ def fit(name, features, outcomes):
 
 
 def main():
-    features, hangs, robust, said = (np.array(column) for column in zip(*poses(sys.argv[1])))
-    print("constant, per radian, per ratio, per mm")
+    features, hangs, robust, said, pairs = (np.array(column) for column in zip(*poses(sys.argv[1])))
+    print("constant, per second, per radian, per mm")
     fitted = fit("hangs", features, hangs)
-    fit("robust", features, robust)
+    fitted_to_robust = fit("robust", features, robust)
     for name, probability in [("as it is", said), ("fitted", fitted)]:
         print(f"Brier score, {name}: {np.mean((probability - hangs) ** 2):.4f}")
+    for name, probability in [("as it is", said), ("fitted", fitted), ("fitted to robust", fitted_to_robust)]:
+        # Of equal ones the first, as the predictor gave them.
+        best = [max(np.flatnonzero(pairs == pair), key=lambda k: probability[k]) for pair in np.unique(pairs)]
+        shares = 100 * hangs[best].mean(), 100 * robust[best].mean()
+        print(f"best of {len(best)} pairs, {name}: hang {shares[0]:.1f} %, robust {shares[1]:.1f} %")
     for low, high in [(0.0, 0.5), (0.5, 0.8), (0.8, 0.9), (0.9, 0.95), (0.95, 0.975), (0.975, 1.0)]:
         of = (fitted >= low) & (fitted < high)
         if of.any():
