@@ -116,8 +116,8 @@ fn pose_words(hanging: &HangingPose) -> Vec<u32> {
         words.extend(bits(&[rest.sinking, rest.clearance]));
         let margin = &rest.margin;
         words.extend(bits(&margin.tilts));
-        words.extend(bits(&[margin.least_tilt(), margin.escape_rise, margin.escape_ratio]));
-        words.extend(bits(&[margin.jolt_time, margin.knock_speed, margin.centre_of_mass_radius]));
+        words.extend(bits(&[margin.least_tilt(), margin.jolt_time, margin.escape_rise, margin.escape_ratio]));
+        words.extend(bits(&[margin.knock_speed, margin.centre_of_mass_radius]));
         words.push(rest.contacts().len() as u32);
         for place in 0..MAX_CONTACTS {
             let contact = rest.contacts().get(place).copied().unwrap_or_default();
