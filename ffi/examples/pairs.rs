@@ -126,7 +126,7 @@ fn pose_words(hanging: &HangingPose) -> Vec<u32> {
             words.push(contact.force.to_bits());
         }
     } else {
-        words.extend([f32::NAN.to_bits(); 1 + 7 + 2 + DIRECTIONS + 5]);
+        words.extend([f32::NAN.to_bits(); 1 + 7 + 2 + DIRECTIONS + 6]);
         words.extend([0; 1 + 7 * MAX_CONTACTS]);
     }
     words.push(u32::from(hanging.matched.is_some()));
