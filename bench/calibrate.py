@@ -13,7 +13,7 @@ MOST_CLEARANCE_MM = 1.0
 
 
 def poses(path):
-    """What the predictor said of each pose, whether it hangs, and whether robustly, what that was said to be, and of which pair it is."""
+    """What the predictor said of each pose, whether it hangs, whether robustly, its probability, and its pair."""
     with open(path) as file:
         rows = [json.loads(line) for line in file]
     for row in rows:

@@ -4,8 +4,8 @@ use crate::geometry::{PointTree, Vector, any_perpendicular, unit_or};
 use bytemuck::{Pod, Zeroable};
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
-/// A rectangle of the plane square to the normal at a point of the supporter, or of the cylinder there, and in which directions the
-/// surface goes straight on. In supporter coordinates.
+/// A rectangle of the plane square to the normal at a point of the supporter, or of the cylinder there, or a cylinder all around a wire;
+/// and in which directions the surface goes straight on. In supporter coordinates.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Patch {
@@ -104,6 +104,11 @@ impl Patch {
         });
         let mean = sum / count;
         let spread = squares / count - mean * mean.transpose();
+        // The Frobenius norm bounds the greatest eigenvalue, so that most points are seen at once to lie on no wire. The spare is for
+        // rounding.
+        if count < LEAST_WIRE || (1.0 + WIRE) * spread.norm() < 0.999 * spread.trace() {
+            return None;
+        }
         // The direction of greatest spread, by power iteration from the farthest offset's: a wire's is so much the greatest that few do.
         let mut along = Vector::zeros();
         offsets(&mut |offset| {
@@ -115,7 +120,7 @@ impl Patch {
         let length = along.dot(&(spread * along));
         // Points on all sides of a cylinder are at its radius from the axis.
         let thickness = spread.trace() - length;
-        if count < LEAST_WIRE || thickness > WIRE * length {
+        if thickness > WIRE * length {
             return None;
         }
         let along = unit_or(along - normal * along.dot(&normal), any_perpendicular(normal));

@@ -60,7 +60,7 @@ const SWINGING_STEPS: usize = 1000;
 /// Slower than this, metres per second of its centre of mass, it hangs then.
 const SLOW: f32 = 0.05;
 
-/// The same without what makes it rest sooner, as it is in truth: it swings out, or falls for that. At last it may still move a little.
+/// The same with little of what makes it rest sooner, as it is in truth: it swings out, or falls for that. At last it may still move a little.
 pub(crate) fn swing_out(
     (body, support): (&Body, &Support),
     release: &Pose,

@@ -62,7 +62,6 @@ pub struct Said {
     /// Radians, in each direction.
     pub tilts: [f32; 8],
     /// Seconds that it stays when jolted.
-    #[serde(default)]
     pub jolt_time: f32,
     /// Metres per second.
     pub knock_speed: f32,
