@@ -201,8 +201,6 @@ pub(super) fn nearest_on_patch(
     at: &Point,
     margin: f32,
 ) -> Result<Nearest, f32> {
-    /// Bodies are about this round where they touch, metres: then the foot of the perpendicular is at the end of the step.
-    const ROUNDNESS: f32 = 0.002;
     let stations = || {
         let all = patch.stations().filter_map(|station| {
             let there = at + rotation.inverse_transform_vector(&station);
@@ -230,10 +228,46 @@ pub(super) fn nearest_on_patch(
     if start.gap - patch.fall(&start.gradient) > margin {
         return if start.step == Vector::zeros() { Err(start.gap) } else { Ok(start) };
     }
-    let step = patch.step_towards(&(start.step - start.gradient * (start.gap.max(0.0) + ROUNDNESS)));
-    let there = at + rotation.inverse_transform_vector(&step);
-    let end = Nearest::new(at, step, body.field.sample(&there), rotation);
-    Ok(if end.gap < start.gap { end } else { start })
+    Ok(descend(body, patch, rotation, at, start))
+}
+
+/// The place where a patch touches is looked for in so many steps at most,
+const DESCENTS: usize = 4;
+/// until it is flat there: a slope below this,
+const FLAT: f32 = 0.02;
+/// and of strides up to so many times as long as first thought.
+const LONGEST_STRIDE: f32 = 4.0;
+/// What leads uphill was too far by this.
+const SHORTER: f32 = 0.3;
+
+/// Goes on from a place of a patch to the nearest one, by the secant method in either direction.
+fn descend(body: &Body, patch: &Patch, rotation: &Rotation3<f32>, at: &Point, start: Nearest) -> Nearest {
+    let mut nearest = start;
+    let first = patch.strides(&nearest.step);
+    let (mut strides, mut slope) = (first, patch.slope(&nearest.step, &nearest.gradient));
+    for _ in 0..DESCENTS {
+        let way: [f32; 2] = core::array::from_fn(|k| -strides[k] * slope[k]);
+        let step = patch.moved(&nearest.step, way);
+        let there = at + rotation.inverse_transform_vector(&step);
+        let next = Nearest::new(at, step, body.field.sample(&there), rotation);
+        if next.gap >= nearest.gap {
+            strides = strides.map(|stride| stride * SHORTER);
+            continue;
+        }
+        let next_slope = patch.slope(&next.step, &next.gradient);
+        nearest = next;
+        for k in 0..2 {
+            let change = next_slope[k] - slope[k];
+            if change * way[k] > 0.0 {
+                strides[k] = (way[k] / change).min(first[k] * LONGEST_STRIDE);
+            }
+        }
+        slope = next_slope;
+        if slope.iter().all(|slope| slope.abs() < FLAT) {
+            break;
+        }
+    }
+    nearest
 }
 
 /// Contacts closer to each other than this, metres, and with similar normals are one.

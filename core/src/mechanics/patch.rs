@@ -15,11 +15,11 @@ pub(crate) struct Patch {
     along: Vector,
     /// Half of the rectangle's extents along and across, metres; zero for a point that another one stands for.
     extents: [f32; 2],
+    /// How much the normals turn to each side, 1/m, 0 where the surface is straight: along, back, across, and back.
+    curvatures: [f32; 4],
     /// In how many directions the surface is straight: in none, along, or both along and across.
     straight: u32,
-    /// How much the normals turn across, where it is straight along, 1/m: there it is a piece of a cylinder.
-    curvature: f32,
-    /// A bit for each of its sides where the surface ends: along, back, across, and back; and [`ALL_AROUND`].
+    /// A bit for each of its sides where the surface ends; and [`ALL_AROUND`].
     ends: u32,
 }
 
@@ -33,10 +33,16 @@ const LEAST_EXTENT: f32 = 1e-5;
 const SAME_SIDE: f32 = 0.75;
 const SAME_BAR: f32 = 0.3;
 
-/// A patch is straight in a direction in which its normals turn by less than this, radians, over half its extent,
+/// A patch is straight in a direction in which its normals turn by less than this, radians, over half its extent.
 const STRAIGHT: f32 = 0.15;
-/// and if the surface goes on for at least this part of that.
-const LEAST_STRAIGHT: f32 = 0.2;
+/// How much the bending on both sides together says about that on each: by so much of the square of the distance it was looked at.
+const SIDE_WEIGHT: f32 = 0.1;
+/// How much the surface of what touches a patch turns, 1/m.
+const BLUNT: f32 = 125.0;
+/// A patch ends where the surface has turned by as much as has this sine.
+const STEEPEST: f32 = 0.9;
+/// Whether the surface goes on beyond a patch is looked for so many times as far as points are apart: closer by, there may be none by chance.
+const FAR: f32 = 2.5;
 /// The surface ends where it is not seen to go on beyond the patch by this part of the distance of the points.
 const BEYOND: f32 = 0.5;
 
@@ -53,8 +59,6 @@ const STATIONS: [f32; 7] = [-1.0, -0.667, -0.333, 0.0, 0.333, 0.667, 1.0];
 
 /// What touches farther out than this part of the extent touches the patch's rim.
 const RIM: f32 = 0.9;
-/// Less than this of a push across the surface says nothing about where it pushes.
-const LEAST_PUSH: f32 = 0.5;
 
 impl Patch {
     /// The patch around a point, in tree order. Points are `spacing` metres from each other, those that have patches at least `apart`.
@@ -65,26 +69,26 @@ impl Patch {
         }
         let (along, curvatures) = bending(tree, normals, index, half + spacing);
         let mut patch = Self { normal: normals[index], along, ..Self::default() };
-        let seen = patch.seen_extents(tree, normals, index, half + spacing);
-        let [length, width] = [seen[0].min(seen[1]), seen[2].min(seen[3])];
-        let is_straight =
-            |k: usize, seen: f32| curvatures[k].abs() * half < STRAIGHT && seen > LEAST_STRAIGHT * half;
-        let extents = [length.min(half), width.min(half)];
-        (patch.straight, patch.extents) = if !is_straight(0, length) {
-            (0, [length.min(width).min(half); 2])
-        } else if !is_straight(1, width) {
-            (1, extents)
-        } else {
-            (2, extents)
+        let sides = patch.side_curvatures(tree, normals, index, half + spacing, curvatures);
+        let is_straight = |k: usize| sides[2 * k..][..2].iter().all(|side| side.abs() * half < STRAIGHT);
+        patch.straight = match (is_straight(0), is_straight(1)) {
+            (false, _) => 0,
+            (true, false) => 1,
+            (true, true) => 2,
         };
-        if patch.straight == 1 {
-            let sharpest = 1.0 / patch.extents[1].max(LEAST_EXTENT);
-            patch.curvature = curvatures[1].clamp(-sharpest, sharpest);
-        }
-        patch.extents = patch.extents.map(|extent| extent.max(LEAST_EXTENT));
-        for (side, seen) in seen.iter().enumerate() {
-            let is_end = *seen < patch.extents[side / 2] + BEYOND * spacing;
-            patch.ends |= u32::from(is_end) << side;
+        patch.curvatures = sides;
+        patch.curvatures[..2 * patch.straight as usize].fill(0.0);
+        let near = patch.seen_extents(tree, normals, index, half + spacing);
+        let far = patch.seen_extents(tree, normals, index, half + FAR * spacing);
+        for k in 0..2 {
+            let sharpest = patch.curvatures[2 * k].abs().max(patch.curvatures[2 * k + 1].abs());
+            let steepest = STEEPEST / sharpest.max(1.0);
+            let extent = near[2 * k].min(near[2 * k + 1]).min(half).min(steepest).max(LEAST_EXTENT);
+            patch.extents[k] = extent;
+            for side in [2 * k, 2 * k + 1] {
+                let is_end = far[side] < extent + BEYOND * spacing && extent < steepest;
+                patch.ends |= u32::from(is_end) << side;
+            }
         }
         patch
     }
@@ -137,7 +141,7 @@ impl Patch {
             along,
             extents: [extent, wire_radius],
             straight: 1,
-            curvature: 1.0 / wire_radius,
+            curvatures: [0.0, 0.0, 1.0 / wire_radius, 1.0 / wire_radius],
             ends: ends[0] | ends[1] << 1 | ALL_AROUND,
         })
     }
@@ -150,22 +154,85 @@ impl Patch {
         let mut seen = [0.0_f32; 4];
         tree.for_each_within(&place, radius, |neighbour| {
             let other = neighbour.index as usize;
-            let cosine = normals[other].dot(&self.normal);
             let offset = tree.points()[other] - place;
             let (x, y) = (offset.dot(&self.along), offset.dot(&across));
+            if normals[other].dot(&self.normal_at(x, y)) < SAME_SIDE {
+                return;
+            }
             let distance = libm::sqrtf(x * x + y * y);
             let ahead = core::f32::consts::FRAC_1_SQRT_2 * distance;
-            for (side, (seen, reach)) in seen.iter_mut().zip([x, -x, y, -y]).enumerate() {
-                let is_along = side < 2;
-                if reach > ahead && cosine > SAME_SIDE {
-                    *seen = seen.max(distance);
-                } else if reach > ahead && cosine > SAME_BAR && is_along {
-                    // On the flank of the bar.
+            for (seen, reach) in seen.iter_mut().zip([x, -x, y, -y]) {
+                if self.straight == 1 {
+                    // All along a bar it is as wide, and all across as long.
                     *seen = seen.max(reach);
+                } else if reach > ahead {
+                    *seen = seen.max(distance);
                 }
             }
         });
         seen
+    }
+
+    /// How much the normals turn to each side, 1/m: where a bar has a round end they turn on one only.
+    fn side_curvatures(
+        &self,
+        tree: &PointTree,
+        normals: &[Vector],
+        index: usize,
+        radius: f32,
+        both: [f32; 2],
+    ) -> [f32; 4] {
+        let place = tree.points()[index];
+        let axes = [self.along, self.across()];
+        let weight = SIDE_WEIGHT * radius * radius;
+        let mut squares = [weight; 4];
+        let mut turns = [both[0] * weight, both[0] * weight, both[1] * weight, both[1] * weight];
+        tree.for_each_within(&place, radius, |neighbour| {
+            let other = neighbour.index as usize;
+            if normals[other].dot(&self.normal) > SAME_BAR {
+                let offset = tree.points()[other] - place;
+                for (k, axis) in axes.iter().enumerate() {
+                    let reach = offset.dot(axis);
+                    let side = 2 * k + usize::from(reach < 0.0);
+                    squares[side] += reach * reach;
+                    turns[side] += reach * normals[other].dot(axis);
+                }
+            }
+        });
+        core::array::from_fn(|side| turns[side] / squares[side])
+    }
+
+    /// How much the normals turn where a step leads along and across, 1/m.
+    fn curvatures_towards(&self, x: f32, y: f32) -> [f32; 2] {
+        [self.curvatures[usize::from(x < 0.0)], self.curvatures[2 + usize::from(y < 0.0)]]
+    }
+
+    /// The normal of the patch at a step along and across.
+    fn normal_at(&self, x: f32, y: f32) -> Vector {
+        let [a, b] = self.curvatures_towards(x, y);
+        let (x, y) = (a * x, b * y);
+        let upwards = libm::sqrtf((1.0 - x * x - y * y).max(0.0));
+        unit_or(self.normal * upwards + self.along * x + self.across() * y, self.normal)
+    }
+
+    /// The slope along and across the patch, at a step from its point, of what grows as `gradient` says.
+    pub(super) fn slope(&self, step: &Vector, gradient: &Vector) -> [f32; 2] {
+        let across = self.across();
+        let normal = self.normal_at(step.dot(&self.along), step.dot(&across));
+        let slope = gradient - normal * gradient.dot(&normal);
+        [slope.dot(&self.along), slope.dot(&across)]
+    }
+
+    /// How far along and across it is from a step to the place without a slope, for each unit of slope, if what touches is flat there or
+    /// blunt, metres.
+    pub(super) fn strides(&self, step: &Vector) -> [f32; 2] {
+        self.curvatures_towards(step.dot(&self.along), step.dot(&self.across()))
+            .map(|curvature| 1.0 / (curvature.max(0.0) + BLUNT))
+    }
+
+    /// The step moved on along and across, as far as the patch goes.
+    pub(super) fn moved(&self, step: &Vector, [x, y]: [f32; 2]) -> Vector {
+        self.step_towards(&(step + self.along * x + self.across() * y))
     }
 
     fn across(&self) -> Vector {
@@ -201,7 +268,7 @@ impl Patch {
 
     /// The radius of the wire, metres; 0 if it is none.
     pub(crate) fn wire_radius(&self) -> f32 {
-        if self.is_all_around() { 1.0 / self.curvature } else { 0.0 }
+        if self.is_all_around() { 1.0 / self.curvatures[2] } else { 0.0 }
     }
 
     /// Whether it is that of a wire, all around it.
@@ -219,35 +286,52 @@ impl Patch {
     pub(crate) fn step_towards(&self, step: &Vector) -> Vector {
         let (across, [a, b]) = (self.across(), self.extents);
         let (x, y) = (step.dot(&self.along).clamp(-a, a), step.dot(&across).clamp(-b, b));
-        // A circle's sagitta.
-        let turn = self.curvature * y;
-        let below = turn * y / (1.0 + libm::sqrtf((1.0 - turn * turn).max(0.0)));
+        let [turn_along, turn_across] = self.curvatures_towards(x, y);
+        let below = sagitta(x, turn_along) + sagitta(y, turn_across);
         self.along * x + across * y - self.normal * below
     }
 
     /// The unit vector along which the patch pushes a body that it touches at `step` from its point and whose surface, seen alone,
-    /// would be pushed along `push`. Where the supporter goes straight on it cannot push along itself: a handle that lies between two
-    /// points of a bar, and leans on the next patch of one, slides along that bar as if there were points in between.
+    /// would be pushed along `push`.
+    ///
+    /// Where the patch is straight, and on its rim, it is the patch's own normal: a handle that lies between two points of a bar, and
+    /// leans on the next patch of one, slides along that bar as if there were points in between. Where it is curved both normals agree,
+    /// but for what is not exact: the patch where it is not as round as it was taken to be, the body where it has an edge. Over the
+    /// rim where the surface ends, the body's surface decides.
     pub(crate) fn push(&self, push: Vector, step: &Vector) -> Vector {
-        if self.straight == 0 {
-            return push;
-        }
         let across = self.across();
-        let along = self.along * self.push_over_end(0, step.dot(&self.along), push.dot(&self.along));
-        let sideways = push.dot(&across);
-        let sideways =
-            if self.straight == 1 { sideways } else { self.push_over_end(1, step.dot(&across), sideways) };
-        let bare = self.normal * push.dot(&self.normal) + along + across * sideways;
-        let length = bare.norm();
-        if length > LEAST_PUSH { bare / length } else { push }
+        let [x, y] = [step.dot(&self.along), step.dot(&across)];
+        let own = self.normal_at(x, y);
+        let along = self.push_over_end(0, x, push.dot(&self.along), own.dot(&self.along));
+        let sideways = self.push_over_end(1, y, push.dot(&across), own.dot(&across));
+        let rest = 1.0 - along * along - sideways * sideways;
+        unit_or(self.normal * libm::sqrtf(rest.max(0.0)) + self.along * along + across * sideways, push)
     }
 
-    /// What is left of the component of a push in a straight direction, along or across: none, but over the rim where the surface ends.
-    fn push_over_end(&self, direction: usize, step: f32, push: f32) -> f32 {
+    /// The component of a push along or across.
+    fn push_over_end(&self, direction: usize, step: f32, push: f32, own: f32) -> f32 {
+        let extent = self.extents[direction];
+        if extent <= LEAST_EXTENT {
+            return push;
+        }
         let side = 2 * direction + usize::from(step < 0.0);
-        let is_end = self.ends & 1 << side != 0 && step.abs() > RIM * self.extents[direction];
-        if is_end && step * push > 0.0 { push } else { 0.0 }
+        let is_on_rim = step.abs() > RIM * extent;
+        let is_straight = (direction as u32) < self.straight;
+        let is_over_end = self.ends & 1 << side != 0 && is_on_rim && (push - own) * step > 0.0;
+        if is_over_end {
+            push
+        } else if is_straight || is_on_rim {
+            own
+        } else {
+            0.5 * (own + push)
+        }
     }
+}
+
+/// How far a circle of this curvature, 1/m, is below its tangent at this distance from where it touches.
+fn sagitta(distance: f32, curvature: f32) -> f32 {
+    let turn = curvature * distance;
+    turn * distance / (1.0 + libm::sqrtf((1.0 - turn * turn).max(0.0)))
 }
 
 /// The direction square to the normal of a point in which the normals around it change least, and by how much they change there and

@@ -220,12 +220,14 @@ fn a_patch_knows_the_bar_and_its_end() {
             let lean = (outward + Vector::x() * 0.8).normalize();
             let pushed = patch.push(lean, &(Vector::x() * 0.002));
             assert!((pushed - outward).norm() < 0.1, "{pushed} at {point}");
-            let aside = (outward + outward.cross(&Vector::x()) * 0.3).normalize();
-            assert!((patch.push(aside, &Vector::zeros()) - aside).norm() < 0.1, "{point}");
             // Its rim lies on the rod, not on a plane: 2 mm aside that is 0.4 mm higher.
             let step = patch.step_towards(&(outward.cross(&Vector::x()) * 0.002));
-            let radius = (point + step).coords.yz().norm();
-            assert!((radius - 0.005).abs() < 0.00015, "{radius} at {point}");
+            let aside = (point + step).coords.yz();
+            assert!((aside.norm() - 0.005).abs() < 0.00015, "{aside} at {point}");
+            // And there it pushes away from the rod's axis.
+            let away = Vector::new(0.0, aside.x, aside.y).normalize();
+            let pushed = patch.push(away, &step);
+            assert!((pushed - away).norm() < 0.05, "{pushed} instead of {away} at {point}");
         }
         // At the very end what leans outwards is pushed off.
         let lean = |point: &Point| (Vector::new(0.0, point.y, point.z).normalize() + Vector::x()).normalize();
@@ -235,6 +237,44 @@ fn a_patch_knows_the_bar_and_its_end() {
         });
         let all = of_bar([0.0285, 0.0301]).count();
         assert!(all > 5 && pushed_off.count() > 3 * all / 4, "{all}");
+    });
+}
+
+#[test]
+fn a_bar_with_a_round_end_is_known_from_few_points() {
+    // Radius 4 mm along x from -60 mm to where it ends in half a ball, seen at points 3 mm apart. A ball has as much surface for each
+    // millimetre of height as the cylinder around it (Archimedes), and the golden angle spreads the points around.
+    const RADIUS: f32 = 0.004;
+    const COUNT: i32 = 180;
+    let normal_at = |i: i32| {
+        let (sin, cos) = (2.399_963_2 * i as f32).sin_cos();
+        let beyond = ((0.064 * (i as f32 + 0.5) / COUNT as f32 - 0.06) / RADIUS).max(0.0);
+        let around = (1.0 - beyond * beyond).sqrt();
+        Vector::new(beyond, around * sin, around * cos)
+    };
+    let points = (0..COUNT).map(|i| {
+        let along = (0.064 * (i as f32 + 0.5) / COUNT as f32 - 0.06).min(0.0);
+        (Vector::x() * along + normal_at(i) * RADIUS).into()
+    });
+    let cloud = (points.collect(), (0..COUNT).map(|i| normal_at(i).into()).collect());
+    Scene::new(ring(), cloud).try_out(|lab| {
+        let patches = lab.support.tree.points().iter().zip(lab.support.patches);
+        for (point, patch) in patches.filter(|(point, patch)| point.x > -0.05 && !patch.is_empty()) {
+            for side in [Vector::x(), -Vector::x(), Vector::y(), -Vector::y(), Vector::z(), -Vector::z()] {
+                let step = patch.step_towards(&(side * 0.01));
+                let place = point + step;
+                let off = place - Point::new(place.x.min(0.0), 0.0, 0.0);
+                assert!(
+                    (off.norm() - RADIUS).abs() < 0.0006,
+                    "{place} is on the rim of the patch at {point}"
+                );
+                // It goes on beyond the patch, so that nothing is pushed along it.
+                if point.x < -0.008 {
+                    let lean = (off.normalize() + side.x * Vector::x()).normalize();
+                    assert!(patch.push(lean, &step).x.abs() < 0.1, "along the bar at {place}");
+                }
+            }
+        }
     });
 }
 
@@ -560,13 +600,15 @@ fn a_deep_hook_is_firmer_than_a_shallow_one() {
 
 #[test]
 fn a_jolt_shakes_off_what_hangs_close_to_the_end() {
-    // Friction would hold the ring anywhere on the level rod if the tilt came slowly. Its swing makes it slip.
-    Scene::new(ring(), rod(Vector::x(), 0.2, 0.005)).try_out(|lab| {
+    // Friction would hold the ring anywhere on the level rod if the tilt came slowly. Its swing makes it slip; but no faster than at
+    // the end of a swing, v^2 = 2 g l (1 - cos 43.6 degrees) with the centre of mass l = 21 mm below the rod, 0.34 m/s: once it slips,
+    // friction is as much as what pulls. So in the middle of a metre it stays for a second.
+    Scene::new(ring(), rod(Vector::x(), 1.0, 0.005)).try_out(|lab| {
         let mut margin_at = |x: f32| {
             let rest = lab.rest(&(Pose::translation(x, 0.0, 0.0) * on_rod()), FRICTION);
             lab.firmness(&rest).margin
         };
-        let (middle, close) = (margin_at(0.0), margin_at(0.092));
+        let (middle, close) = (margin_at(0.0), margin_at(0.492));
         assert_eq!(middle.jolt_time, Margin::MOST_JOLT_TIME, "{middle:?}");
         assert!((0.05..0.8).contains(&close.jolt_time), "{close:?}");
     });
