@@ -48,7 +48,7 @@
 #define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 312
 #define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 17
 #define HANGPOSE_SUPPORTER_BYTES_AT_LEAST 17408
-#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 224
+#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 236
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 43008
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 12
 #define HANGPOSE_PREDICT_BYTES_EACH_POSE 380
@@ -165,7 +165,7 @@ typedef struct hangpose_params {
   // Nodes of the object's signed distance field at most; 0 to 10000000, at least 1 for `settle` and for
   // HANGPOSE_CANDIDATES_CONTACTS.
   uint32_t voxels;
-  // Poses that are let go at most; 0 to 10000.
+  // Poses that are let go at most while none stays; once one does, no more than a quarter of that in all; 0 to 10000.
   uint32_t settle_attempts;
   // No more poses are let go when so many stay firmly, with a probability of 97.5 % or more; 0 to 10000.
   uint32_t firm_enough;

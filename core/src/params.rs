@@ -94,7 +94,7 @@ pub struct Params {
     pub clearance: f32,
     /// Nodes of the object's signed distance field at most: two bytes each, and as much again for where they are.
     pub voxels: usize,
-    /// Poses that are let go at most.
+    /// Poses that are let go at most while none stays; once one does, no more than a quarter of that in all.
     pub settle_attempts: usize,
     /// No more poses are let go when so many stay firmly: with a probability of 97.5 % or more.
     pub firm_enough: usize,
@@ -224,7 +224,7 @@ impl Default for Params {
             candidates: Candidates::Contacts,
             settle: true,
             voxels: 400_000,
-            settle_attempts: 32,
+            settle_attempts: 128,
             firm_enough: 3,
             min_probability: 0.3,
             ..Self::paper()

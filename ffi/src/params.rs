@@ -104,7 +104,7 @@ pub struct hangpose_params {
     /// Nodes of the object's signed distance field at most; 0 to 10000000, at least 1 for `settle` and for
     /// HANGPOSE_CANDIDATES_CONTACTS.
     pub voxels: u32,
-    /// Poses that are let go at most; 0 to 10000.
+    /// Poses that are let go at most while none stays; once one does, no more than a quarter of that in all; 0 to 10000.
     pub settle_attempts: u32,
     /// No more poses are let go when so many stay firmly, with a probability of 97.5 % or more; 0 to 10000.
     pub firm_enough: u32,

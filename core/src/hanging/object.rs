@@ -87,7 +87,13 @@ impl<'m> Object<'m> {
         let mut scratch = arena.scratch();
         let points = scratch.slice::<Point>(params.samples)?;
         let normals = scratch.slice::<Vector>(params.samples)?;
-        sampling::sample_into(mesh, params.seed, points, normals, scratch.scratch())?;
+        match params.candidates {
+            Candidates::Sites => {
+                sampling::sample_into(mesh, params.seed, points, normals, scratch.scratch())?
+            }
+            // Contacts are kept apart as they are found.
+            Candidates::Contacts => sampling::scatter_into(mesh, params.seed, points, normals),
+        }
         if mass.is_inside_out {
             normals.iter_mut().for_each(|normal| *normal = -*normal);
         }

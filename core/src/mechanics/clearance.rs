@@ -16,11 +16,11 @@ pub(crate) fn first_within(
     // Beyond the band the field may say no more than that a point is there.
     let clearance = clearance.min(0.9 * field.band());
     let is_off = |point: &Point, radius: f32| field.distance(point) - radius > clearance;
-    first(scene, pose, clearance, is_off, |point| is_off(point, 0.0), meter)
+    first(scene, pose, clearance, is_off, |point| is_off(point, 0.0), |_, _| false, meter)
 }
 
-/// Whether every point of the supporter is farther than `clearance` metres from the object's surface, exactly. It is not clear either
-/// where the field overlooks something thin, such as the strings of a racquet, that passes closer to a point of the supporter than the
+/// Whether every point of the supporter is farther than `clearance` metres from the object's surface, exactly, and no bar of it passes
+/// through that between its points, be it of something without an inside. It is not clear either where the field overlooks something thin, such as the strings of a racquet, that passes closer to a point of the supporter than the
 /// points are apart: it may run through between them.
 pub(crate) fn is_off_surface(
     scene: (&Body, &Support),
@@ -37,7 +37,12 @@ pub(crate) fn is_off_surface(
         };
         !surface.is_within(point, clearance) && !is_overlooked()
     };
-    Ok(first(scene, pose, greatest, is_off, is_point_off, meter)?.is_none())
+    let crosses = |from: &Point, to: &Point| {
+        let way = to - from;
+        let length = way.norm();
+        length > 0.0 && surface.closest_hit(from, &(way / length)).is_some_and(|hit| hit < length)
+    };
+    Ok(first(scene, pose, greatest, is_off, is_point_off, crosses, meter)?.is_none())
 }
 
 /// The field is farther off than its error, in voxels, only where it overlooks something.
@@ -47,7 +52,7 @@ const OVERLOOKED: f32 = 0.3;
 const DEEP: f32 = 0.001;
 
 /// The first point of the supporter of which `is_point_off`, asked in object coordinates, is not true, or the deepest place of a patch
-/// that is deep in the body. Points that are farther than `distance` from a ball around the body are off, and so is everything within a radius of a point of
+/// that is deep in the body, or the point of one on a bar that has a line between whose ends `crosses` is true. Points that are farther than `distance` from a ball around the body are off, and so is everything within a radius of a point of
 /// which `is_off` says so.
 fn first(
     (body, support): (&Body, &Support),
@@ -55,6 +60,7 @@ fn first(
     distance: f32,
     is_off: impl Fn(&Point, f32) -> bool,
     is_point_off: impl Fn(&Point) -> bool,
+    crosses: impl Fn(&Point, &Point) -> bool,
     meter: &mut Meter,
 ) -> Result<Option<Point>, Stop> {
     let to_object = pose.inverse();
@@ -65,8 +71,13 @@ fn first(
         if patch.is_empty() {
             return None;
         }
-        let nearest = nearest_on_patch(body, patch, &rotation, &at, -DEEP).ok()?;
-        (nearest.gap < -DEEP).then(|| points[index] + nearest.step)
+        if let Ok(nearest) = nearest_on_patch(body, patch, &rotation, &at, -DEEP)
+            && nearest.gap < -DEEP
+        {
+            return Some(points[index] + nearest.step);
+        }
+        let [from, to] = patch.line().map(|step| at + rotation.inverse_transform_vector(&step));
+        crosses(&from, &to).then(|| points[index])
     };
     let (mut found, mut queries) = (None, 0);
     support.tree.bvh().descend(|_, node| {

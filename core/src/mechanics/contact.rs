@@ -157,8 +157,14 @@ impl<'s> Neighbourhood<'s> {
             if nearest.gap > margin {
                 continue;
             }
-            let Nearest { at, gap, .. } = nearest;
+            let Nearest { at, mut gap, .. } = nearest;
             let normal = patch.push(-nearest.gradient, &nearest.step);
+            if gap > 0.0 && normal.dot(&nearest.gradient) > BEHIND {
+                if gap > SHEET * body.field.voxel_size() {
+                    continue;
+                }
+                gap = -gap;
+            }
             let anchor = at - body.centre;
             let position = state.centre + rotation * anchor;
             let offset = gap - position.coords.dot(&normal);
@@ -168,6 +174,10 @@ impl<'s> Neighbourhood<'s> {
     }
 }
 
+/// What a patch would have to push away from itself by more than this cosine is behind it, where it does not bear,
+const BEHIND: f32 = 0.3;
+/// unless it is closer than so many voxels: a sheet without an inside, which the field does not see to be entered, on its way through.
+const SHEET: f32 = 0.5;
 /// Contacts are looked for again after they were carried along for so many steps,
 const CARRIES: u8 = 1;
 /// or when any point of the body may have moved farther than this, metres.

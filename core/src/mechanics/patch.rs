@@ -57,6 +57,8 @@ const ALL_AROUND: u32 = 1 << 4;
 const LONG: f32 = 0.0025;
 const STATIONS: [f32; 7] = [-1.0, -0.667, -0.333, 0.0, 0.333, 0.667, 1.0];
 
+/// That it goes on is certain up to this part of the extent.
+const CERTAIN: f32 = 0.7;
 /// What touches farther out than this part of the extent touches the patch's rim.
 const RIM: f32 = 0.9;
 
@@ -78,8 +80,7 @@ impl Patch {
         };
         patch.curvatures = sides;
         patch.curvatures[..2 * patch.straight as usize].fill(0.0);
-        let near = patch.seen_extents(tree, normals, index, half + spacing);
-        let far = patch.seen_extents(tree, normals, index, half + FAR * spacing);
+        let [near, far] = patch.seen_extents(tree, normals, index, [half + spacing, half + FAR * spacing]);
         for k in 0..2 {
             let sharpest = patch.curvatures[2 * k].abs().max(patch.curvatures[2 * k + 1].abs());
             let steepest = STEEPEST / sharpest.max(1.0);
@@ -146,31 +147,42 @@ impl Patch {
         })
     }
 
-    /// How far the surface is seen to go on to each side, metres, up to about `radius`: a patch that reached over the rim of a bar's end
-    /// would hold what slides off there.
-    fn seen_extents(&self, tree: &PointTree, normals: &[Vector], index: usize, radius: f32) -> [f32; 4] {
+    /// How far the surface is seen to go on to each side, metres, up to about the first and the second of `radii`: a patch that reached
+    /// over the rim of a bar's end would hold what slides off there.
+    fn seen_extents(
+        &self,
+        tree: &PointTree,
+        normals: &[Vector],
+        index: usize,
+        radii: [f32; 2],
+    ) -> [[f32; 4]; 2] {
         let place = tree.points()[index];
         let across = self.across();
-        let mut seen = [0.0_f32; 4];
-        tree.for_each_within(&place, radius, |neighbour| {
+        let [mut near, mut far] = [[0.0_f32; 4]; 2];
+        tree.for_each_within(&place, radii[1], |neighbour| {
             let other = neighbour.index as usize;
             let offset = tree.points()[other] - place;
             let (x, y) = (offset.dot(&self.along), offset.dot(&across));
             if normals[other].dot(&self.normal_at(x, y)) < SAME_SIDE {
                 return;
             }
+            let is_near = neighbour.distance_squared <= radii[0] * radii[0];
             let distance = libm::sqrtf(x * x + y * y);
             let ahead = core::f32::consts::FRAC_1_SQRT_2 * distance;
-            for (seen, reach) in seen.iter_mut().zip([x, -x, y, -y]) {
-                if self.straight == 1 {
-                    // All along a bar it is as wide, and all across as long.
-                    *seen = seen.max(reach);
-                } else if reach > ahead {
-                    *seen = seen.max(distance);
+            for (side, reach) in [x, -x, y, -y].into_iter().enumerate() {
+                // All along a bar it is as wide, and all across as long.
+                let seen = match self.straight {
+                    1 => reach,
+                    _ if reach > ahead => distance,
+                    _ => continue,
+                };
+                far[side] = far[side].max(seen);
+                if is_near {
+                    near[side] = near[side].max(seen);
                 }
             }
         });
-        seen
+        [near, far]
     }
 
     /// How much the normals turn to each side, 1/m: where a bar has a round end they turn on one only.
@@ -258,6 +270,14 @@ impl Patch {
         let inwards = self.normal * self.wire_radius();
         let places = STATIONS.into_iter().filter(move |_| is_long || self.is_all_around());
         places.map(move |part| self.along * (part * self.extents[0]) - inwards)
+    }
+
+    /// Steps from its point to the ends of a line along a bar, on the axis of a wire; both are none where it is no bar. What that passes
+    /// through, the supporter passes through, also where it has no points.
+    pub(crate) fn line(&self) -> [Vector; 2] {
+        let inwards = self.normal * self.wire_radius();
+        let length = if self.straight == 1 { CERTAIN * self.extents[0] } else { 0.0 };
+        [length, -length].map(|reach| self.along * reach - inwards)
     }
 
     /// The step from its point to where a wire faces what is the way of `-gradient` from a station; elsewhere the station itself.

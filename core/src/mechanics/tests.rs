@@ -279,6 +279,29 @@ fn a_bar_with_a_round_end_is_known_from_few_points() {
 }
 
 #[test]
+fn a_bar_through_a_sheet_is_seen_between_its_points() {
+    // A bar of 3 mm along x, seen in rings of points 4 mm apart; the sheet, of a fifth of a millimetre, is
+    // square to it, halfway between two rings.
+    let normal_at = |k: usize| {
+        let (sin, cos) = (core::f32::consts::TAU * (k % 8) as f32 / 8.0 + 0.4 * (k / 8 % 2) as f32).sin_cos();
+        Vector::new(0.0, sin, cos)
+    };
+    let points =
+        (0..80).map(|k| (Vector::x() * (0.004 * (k / 8) as f32 - 0.02) + normal_at(k) * 0.003).into());
+    let cloud = (points.collect(), (0..80).map(|k| normal_at(k).into()).collect());
+    let square = [[-0.02, -0.02], [0.02, -0.02], [0.02, 0.02], [-0.02, 0.02]];
+    Scene::new(test_shapes::prism(0.0002, &square), cloud).try_out(|lab| {
+        let monitor = Monitor::new();
+        let is_off = |y: f32| {
+            let (pose, scene) = (at(-0.002, y, 0.0), (&lab.body, &lab.support));
+            is_off_surface(scene, &pose, 0.0005, &mut Meter::new(&monitor)).unwrap()
+        };
+        assert!(!is_off(0.0), "the bar runs through the middle of the sheet");
+        assert!(is_off(0.024), "the sheet is beside the bar");
+    });
+}
+
+#[test]
 fn a_wire_is_known_by_the_line_of_its_points() {
     // A wire of 1 mm along x, seen at a point every 6 mm, each on another side of it; the ring's own wire has 2 mm.
     let around = |k: i32| (2.4 * k as f32).sin_cos();

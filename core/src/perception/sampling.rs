@@ -106,18 +106,35 @@ pub(crate) fn sample_into(
 ) -> Result<(), OutOfMemory> {
     let count = points.len();
     let drawn = scratch.slice::<Candidate>(count * OVERSAMPLING)?;
-    let area = draw(mesh, seed, drawn);
+    let area = draw(mesh, seed, drawn.len(), |place, candidate| drawn[place] = candidate);
     // The largest radius that `count` disks on a plane of this area can have (section 3.1).
     let r_max = libm::sqrtf(area / (2.0 * libm::sqrtf(3.0) * count.max(1) as f32));
     let candidates = scratch.slice::<Candidate>(drawn.len())?;
     let cells = Cells::sort(drawn, candidates, 2.0 * r_max, &mut scratch)?;
     let kept = eliminate(candidates, &cells, count, r_max, &mut scratch)?;
     for ((point, normal), &index) in points.iter_mut().zip(normals).zip(kept) {
-        let candidate = &candidates[index as usize];
-        *point = candidate.position.into();
-        *normal = crate::geometry::scaled_normal(&mesh.corners(candidate.triangle as usize)).normalize();
+        (*point, *normal) = candidates[index as usize].on(mesh);
     }
     Ok(())
+}
+
+/// Draws points with the normals of their triangles as evenly, but not kept apart, in a tenth of the time, and in no order, so that any
+/// part of them is of the whole surface too.
+pub(crate) fn scatter_into(mesh: &Mesh, seed: u64, points: &mut [Point], normals: &mut [Vector]) {
+    let count = points.len();
+    // Steps by about the golden section go through all places, and far from each other, if they have no divisor in common.
+    let is_coprime = |&stride: &usize| {
+        let (mut a, mut b) = (count, stride);
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a == 1
+    };
+    let stride = (1..=(0.618 * count as f64) as usize).rev().find(is_coprime).unwrap_or(1);
+    draw(mesh, seed, count, |place, candidate| {
+        let place = (place * stride) % count;
+        (points[place], normals[place]) = candidate.on(mesh);
+    });
 }
 
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -127,14 +144,22 @@ struct Candidate {
     triangle: u32,
 }
 
-/// Draws candidates uniformly by area, in the order of the triangles, and returns the area in m².
-fn draw(mesh: &Mesh, seed: u64, candidates: &mut [Candidate]) -> f32 {
+impl Candidate {
+    /// The point and the normal.
+    fn on(&self, mesh: &Mesh) -> (Point, Vector) {
+        let normal = crate::geometry::scaled_normal(&mesh.corners(self.triangle as usize)).normalize();
+        (self.position.into(), normal)
+    }
+}
+
+/// Draws `count` candidates uniformly by area, tells them in the order of the triangles, and returns the area in m².
+fn draw(mesh: &Mesh, seed: u64, count: usize, mut tell: impl FnMut(usize, Candidate)) -> f32 {
     let normal_of = |t: u32| crate::geometry::scaled_normal(&mesh.corners(t as usize));
     let total: f64 = mesh.solid_triangles().map(|t| f64::from(normal_of(t).norm()) / 2.0).sum();
     let mut random = Random::new(seed);
     // One candidate in each of as many equal shares of the area, so that no part is left out by chance, at a random
     // place of the share, so that it makes no pattern with the order of the triangles.
-    let share = total / candidates.len() as f64;
+    let share = total / count as f64;
     let place = |drawn: usize, random: &mut Random| (drawn as f64 + f64::from(random.next_f32())) * share;
     let mut next = place(0, &mut random);
     let (mut covered, mut drawn) = (0.0, 0);
@@ -144,10 +169,10 @@ fn draw(mesh: &Mesh, seed: u64, candidates: &mut [Candidate]) -> f32 {
         covered += f64::from(normal.norm()) / 2.0;
         let [a, b, c] = mesh.corners(triangle as usize);
         let is_last = triangles.peek().is_none();
-        while drawn < candidates.len() && (is_last || next < covered) {
+        while drawn < count && (is_last || next < covered) {
             let (s, t) = (libm::sqrtf(random.next_f32()), random.next_f32());
             let position = a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t);
-            candidates[drawn] = Candidate { position: position.into(), triangle };
+            tell(drawn, Candidate { position: position.into(), triangle });
             drawn += 1;
             next = place(drawn, &mut random);
         }
@@ -338,6 +363,25 @@ mod tests {
                 .map(|(i, j)| (points[i] - points[j]).norm())
                 .fold(f32::INFINITY, f32::min);
             assert!(count < 500 || closest > 0.6 * 2.0 * r_max, "{count}: {closest} of {}", 2.0 * r_max);
+        }
+    }
+
+    #[test]
+    fn scattered_ones_are_of_the_whole_surface_from_the_start() {
+        let torus = test_shapes::torus(0.04, 0.01, 96, 32);
+        for count in [1, 2, 100, 1000] {
+            let (mut points, mut normals) = (vec![Point::origin(); count], vec![Vector::zeros(); count]);
+            scatter_into(&torus.mesh(), 1, &mut points, &mut normals);
+            for (point, normal) in points.iter().zip(&normals) {
+                let outward = point.coords - Vector::new(point.x, point.y, 0.0).normalize() * 0.04;
+                assert!((outward.norm() - 0.01).abs() < 1e-4, "off the surface");
+                assert!((normal.norm() - 1.0).abs() < 1e-5 && normal.dot(&outward.normalize()) > 0.98);
+            }
+            // Of each tenth of them about half are on either side.
+            for part in points.chunks(100) {
+                let aside = part.iter().filter(|point| point.x > 0.0).count();
+                assert!(part.len() < 100 || (40..=60).contains(&aside), "{aside} of {}", part.len());
+            }
         }
     }
 

@@ -66,7 +66,7 @@ enum Profile {
     SitesSettled,
     /// Ours without gravity: the most promising contacts, as they are.
     ContactsOnly,
-    /// Ours, at most eight poses let go.
+    /// Ours, at most eight poses let go once one stays.
     EightAttempts,
 }
 
@@ -80,7 +80,7 @@ impl Profile {
             Self::SitesOnly => Params { candidates, settle: false, ..ours },
             Self::SitesSettled => Params { candidates, ..ours },
             Self::ContactsOnly => Params { settle: false, ..ours },
-            Self::EightAttempts => Params { settle_attempts: 8, ..ours },
+            Self::EightAttempts => Params { settle_attempts: 32, ..ours },
         }
     }
 }

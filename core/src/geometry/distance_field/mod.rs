@@ -168,17 +168,29 @@ impl<'m> DistanceField<'m> {
     /// The same distance as [`sample`](Self::sample) gives, in metres, without the gradient.
     pub fn distance(&self, point: &Point) -> f32 {
         let local = self.layout.in_voxels(point);
-        let Some((block, cell)) = self.layout.locate(&local) else {
-            return self.sample_outside(&local).0;
-        };
+        match self.layout.locate(&local) {
+            Some(at) => self.distance_at(&local, at),
+            None => {
+                let on_grid = self.layout.clamp(&local);
+                let way = (local - on_grid) * self.layout.voxel;
+                let rest = self.layout.locate(&on_grid).map_or(0.0, |at| self.distance_at(&on_grid, at));
+                let rest = rest.max(0.0);
+                libm::sqrtf(way.norm_squared() + rest * rest)
+            }
+        }
+    }
+
+    /// [`distance`](Self::distance) in the grid, in a block and a cell of it.
+    #[inline]
+    fn distance_at(&self, local: &Vector, (block, cell): (usize, usize)) -> f32 {
         match Entry::unpack(self.grid[block]) {
             Entry::Brick(brick) => {
-                let t = fractions(&local);
+                let t = fractions(local);
                 let [x00, x10, x01, x11] = along_x(&self.cell(brick, cell), t[0]);
                 let (y0, y1) = (x00 + (x10 - x00) * t[1], x01 + (x11 - x01) * t[1]);
                 self.in_metres(y0 + (y1 - y0) * t[2])
             }
-            Entry::Far(distance) => self.bound(&local, block, distance),
+            Entry::Far(distance) => self.bound(local, block, distance),
         }
     }
 
