@@ -4,8 +4,8 @@ use crate::geometry::{PointTree, Vector, any_perpendicular, unit_or};
 use bytemuck::{Pod, Zeroable};
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
-/// A rectangle of the plane square to the normal at a point of the supporter, or of the cylinder there, or a cylinder all around a wire;
-/// and in which directions the surface goes straight on. In supporter coordinates.
+/// A rectangle of the plane square to the normal at a point of the supporter, bent to each side as the surface is, or a cylinder all
+/// around a wire; and in which directions the surface goes straight on. In supporter coordinates.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Patch {
@@ -87,6 +87,7 @@ impl Patch {
             let extent = near[2 * k].min(near[2 * k + 1]).min(half).min(steepest).max(LEAST_EXTENT);
             patch.extents[k] = extent;
             for side in [2 * k, 2 * k + 1] {
+                // What is cut off because it gets steep goes on below.
                 let is_end = far[side] < extent + BEYOND * spacing && extent < steepest;
                 patch.ends |= u32::from(is_end) << side;
             }
