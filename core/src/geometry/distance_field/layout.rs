@@ -4,6 +4,7 @@ use super::super::{Aabb, Point, Surface, Vector};
 use super::brick::{BLOCK, BRICK_NODES};
 use super::{BAND, Entry, raster};
 use crate::memory::larger;
+use core::hint::black_box;
 
 /// The most bricks of a field of `voxels` nodes. One is enough for any mesh.
 pub(super) const fn max_bricks(voxels: usize) -> usize {
@@ -170,7 +171,9 @@ impl Layout {
 
     #[inline]
     pub(super) fn in_voxels(&self, point: &Point) -> Vector {
-        (point - self.origin) * self.inverse
+        // Kept from becoming a vector whose spare lanes hold what was in the register: where that is no normal number, as an integer is
+        // none, multiplying takes a hundred times as long.
+        black_box(point - self.origin) * self.inverse
     }
 
     pub(super) fn in_object(&self, local: &Vector) -> Point {

@@ -21,6 +21,7 @@ mod tests;
 use super::{Aabb, Point, Surface, Vector, unit_or};
 use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
 use brick::{BLOCK, BRICK_NODES};
+use core::hint::black_box;
 use far::Far;
 use frame::Frame;
 use layout::Layout;
@@ -172,10 +173,10 @@ impl<'m> DistanceField<'m> {
             Some(at) => self.distance_at(&local, at),
             None => {
                 let on_grid = self.layout.clamp(&local);
-                let way = (local - on_grid) * self.layout.voxel;
+                let way = black_box(local - on_grid) * self.layout.voxel;
                 let rest = self.layout.locate(&on_grid).map_or(0.0, |at| self.distance_at(&on_grid, at));
                 let rest = rest.max(0.0);
-                libm::sqrtf(way.norm_squared() + rest * rest)
+                libm::sqrtf(black_box(way).norm_squared() + rest * rest)
             }
         }
     }
@@ -245,7 +246,7 @@ impl<'m> DistanceField<'m> {
 
     /// What is certain of the distance in a block without a brick, in metres.
     fn bound(&self, local: &Vector, block: usize, distance: f32) -> f32 {
-        let off_centre = (local - self.layout.centre(block)).norm();
+        let off_centre = black_box(local - self.layout.centre(block)).norm();
         let size = (distance.abs() - off_centre).max(BAND) * self.layout.voxel;
         // A block that is inside may reach out of the box, through the opening of an open mesh.
         if distance < 0.0 && self.aabb.contains(&Point::from(*local)) { -size } else { size }
