@@ -20,8 +20,9 @@ pub(crate) fn first_within(
 }
 
 /// Whether every point of the supporter is farther than `clearance` metres from the object's surface, exactly, and no bar of it passes
-/// through that between its points, be it of something without an inside. It is not clear either where the field overlooks something thin, such as the strings of a racquet, that passes closer to a point of the supporter than the
-/// points are apart: it may run through between them.
+/// through that between its points, be it of something without an inside. It is not clear either where the field overlooks something
+/// thin, such as the strings of a racquet, that passes closer to a point of the supporter than the points are apart: it may run through
+/// between them.
 pub(crate) fn is_off_surface(
     scene: (&Body, &Support),
     pose: &Pose,
@@ -52,8 +53,8 @@ const OVERLOOKED: f32 = 0.3;
 const DEEP: f32 = 0.001;
 
 /// The first point of the supporter of which `is_point_off`, asked in object coordinates, is not true, or the deepest place of a patch
-/// that is deep in the body, or the point of one on a bar that has a line between whose ends `crosses` is true. Points that are farther than `distance` from a ball around the body are off, and so is everything within a radius of a point of
-/// which `is_off` says so.
+/// that is deep in the body, or the point of one on a bar between whose line's ends `crosses` is true. Points that are farther than
+/// `distance` from a ball around the body are off, and so is everything within a radius of a point of which `is_off` says so.
 fn first(
     (body, support): (&Body, &Support),
     pose: &Pose,

@@ -174,9 +174,11 @@ impl<'s> Neighbourhood<'s> {
     }
 }
 
-/// What a patch would have to push away from itself by more than this cosine is behind it, where it does not bear,
+/// A body that the patch's push would bring closer, by more than this cosine, is behind the patch: it touches another side of the
+/// supporter, not this one,
 const BEHIND: f32 = 0.3;
-/// unless it is closer than so many voxels: a sheet without an inside, which the field does not see to be entered, on its way through.
+/// unless it is less than so many voxels away: then it is a sheet without an inside, whose gap is positive on either side, that has
+/// begun to pass through.
 const SHEET: f32 = 0.5;
 /// Contacts are looked for again after they were carried along for so many steps,
 const CARRIES: u8 = 1;
