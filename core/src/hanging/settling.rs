@@ -47,8 +47,8 @@ pub(super) struct Settling<'a> {
     pub(super) counts: SettlingCounts,
 }
 
-/// Once one stays, so many times fewer poses are let go than while none does.
-const PATIENCE: usize = 4;
+/// So many times more poses are let go while none stays than once one does.
+const MORE_WHILE_NONE_STAYS: usize = 4;
 /// Tilts below this, radians, are not worth the time for the others.
 const WORTHLESS_TILT: f32 = 0.15;
 /// A release that comes closer to the supporter than this, metres, is as good as none: clouds are no more exact.
@@ -102,7 +102,7 @@ impl Settling<'_> {
                 None => candidates.discount(&candidate, 1.0),
             }
             let has_enough = self.counts.firm >= self.params.firm_enough;
-            if has_enough || self.counts.probable > 0 && PATIENCE * (attempt + 1) >= attempts {
+            if has_enough || self.counts.probable > 0 && MORE_WHILE_NONE_STAYS * (attempt + 1) >= attempts {
                 break;
             }
         }

@@ -37,7 +37,7 @@ const SAME_BAR: f32 = 0.3;
 const STRAIGHT: f32 = 0.15;
 /// How much the bending on both sides together says about that on each: by so much of the square of the distance it was looked at.
 const SIDE_WEIGHT: f32 = 0.1;
-/// How much the surface of what touches a patch turns, 1/m.
+/// How much the surface of what touches a patch is taken to turn at first, 1/m: a radius of 8 mm.
 const BLUNT: f32 = 125.0;
 /// A patch ends where the surface has turned by as much as has this sine.
 const STEEPEST: f32 = 0.9;
@@ -57,7 +57,7 @@ const ALL_AROUND: u32 = 1 << 4;
 const LONG: f32 = 0.0025;
 const STATIONS: [f32; 7] = [-1.0, -0.667, -0.333, 0.0, 0.333, 0.667, 1.0];
 
-/// That it goes on is certain up to this part of the extent.
+/// That the supporter is there is certain up to this part of the extent.
 const CERTAIN: f32 = 0.7;
 /// What touches farther out than this part of the extent touches the patch's rim.
 const RIM: f32 = 0.9;
@@ -323,14 +323,14 @@ impl Patch {
         let across = self.across();
         let [x, y] = [step.dot(&self.along), step.dot(&across)];
         let own = self.normal_at(x, y);
-        let along = self.push_over_end(0, x, push.dot(&self.along), own.dot(&self.along));
-        let sideways = self.push_over_end(1, y, push.dot(&across), own.dot(&across));
+        let along = self.push_in_direction(0, x, push.dot(&self.along), own.dot(&self.along));
+        let sideways = self.push_in_direction(1, y, push.dot(&across), own.dot(&across));
         let rest = 1.0 - along * along - sideways * sideways;
         unit_or(self.normal * libm::sqrtf(rest.max(0.0)) + self.along * along + across * sideways, push)
     }
 
-    /// The component of a push along or across.
-    fn push_over_end(&self, direction: usize, step: f32, push: f32, own: f32) -> f32 {
+    /// The component along or across of a push that is `push` by the body's surface and `own` by the patch.
+    fn push_in_direction(&self, direction: usize, step: f32, push: f32, own: f32) -> f32 {
         let extent = self.extents[direction];
         if extent <= LEAST_EXTENT {
             return push;

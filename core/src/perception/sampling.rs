@@ -118,8 +118,8 @@ pub(crate) fn sample_into(
     Ok(())
 }
 
-/// Draws points with the normals of their triangles as evenly, but not kept apart, in a tenth of the time, and in no order, so that any
-/// part of them is of the whole surface too.
+/// Draws points with the normals of their triangles evenly by area, but not kept apart, and in no order, so that any part of them is of
+/// the whole surface too.
 pub(crate) fn scatter_into(mesh: &Mesh, seed: u64, points: &mut [Point], normals: &mut [Vector]) {
     let count = points.len();
     // Steps by about the golden section go through all places, and far from each other, if they have no divisor in common.

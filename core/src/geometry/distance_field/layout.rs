@@ -172,7 +172,7 @@ impl Layout {
     #[inline]
     pub(super) fn in_voxels(&self, point: &Point) -> Vector {
         // Kept from becoming a vector whose spare lanes hold what was in the register: where that is no normal number, as an integer is
-        // none, multiplying takes a hundred times as long.
+        // none, multiplying takes far longer.
         black_box(point - self.origin) * self.inverse
     }
 
