@@ -17,10 +17,10 @@ pub struct MassProperties {
     pub is_inside_out: bool,
     /// The volume, m³, of a closed mesh. Where bodies overlap it counts twice.
     pub volume: Option<f32>,
-    /// The centroid of that volume.
+    /// The centroid of that volume; `None` also where bodies that face inwards and outwards cancel out, so that it would be nowhere.
     pub volume_centroid: Option<Point>,
-    /// The inertia tensor of a unit mass spread evenly over the volume of a closed mesh, or the surface of another, about
-    /// its own centroid; m².
+    /// The inertia tensor of a unit mass spread evenly over the volume, or where that has no centroid the surface, about its own
+    /// centroid; m².
     pub inertia: Matrix3<f32>,
 }
 
@@ -62,23 +62,28 @@ impl MassProperties {
         let e = aabb.extents();
         let bounds_volume = is_closed && volume.abs() as f32 > LEAST_VOLUME * e.x * e.y * e.z;
         let centroid = (middle + moment / volume).cast::<f32>();
-        let (spread, mean) = if bounds_volume {
-            (solid / volume, moment / volume)
-        } else {
-            (shell / area, shell_moment / area)
-        };
-        let spread = spread - mean * mean.transpose();
+        let about = |spread: Matrix3<f64>, mean: nalgebra::Vector3<f64>| spread - mean * mean.transpose();
+        let mut spread = about(solid / volume, moment / volume);
+        // Inconsistently oriented bodies may cancel out, throw the centroid outside, and spread the volume by less than nothing.
+        let is_solid = bounds_volume && aabb.contains(&centroid) && is_positive(&spread);
+        if !is_solid {
+            spread = about(shell / area, shell_moment / area);
+        }
         let inertia = (Matrix3::identity() * spread.trace() - spread).cast::<f32>();
         Ok(Self {
             area: area as f32,
             is_closed,
             is_inside_out: bounds_volume && volume < 0.0,
             volume: bounds_volume.then_some(volume.abs() as f32),
-            // Inconsistently oriented bodies may cancel out and throw the centroid outside.
-            volume_centroid: (bounds_volume && aabb.contains(&centroid)).then_some(centroid),
+            volume_centroid: is_solid.then_some(centroid),
             inertia,
         })
     }
+}
+
+/// Whether a symmetric matrix is positive definite: Sylvester's criterion.
+fn is_positive(m: &Matrix3<f64>) -> bool {
+    m.m11 > 0.0 && m.m11 * m.m22 > m.m12 * m.m21 && m.determinant() > 0.0
 }
 
 /// Whether each directed edge is matched by one in the opposite direction.
@@ -161,6 +166,16 @@ mod tests {
         assert_eq!((open.is_closed, open.volume, open.volume_centroid), (false, None, None));
         let one_flipped = [FACES[0], FACES[1], FACES[2], flipped[3]];
         assert!(!mass_of(&CORNERS, &one_flipped).is_closed);
+        // Two bodies, one inwards and smaller: together they hold something, but it is nowhere. Its inertia is that of the surface.
+        let beside = CORNERS.map(|corner| [11.0 - 0.9 * corner[0], corner[1] * 0.9, corner[2] * 0.9]);
+        let vertices = [CORNERS, beside].concat();
+        let both =
+            |of: [[u32; 3]; 4]| mass_of(&vertices, &[FACES, of.map(|face| face.map(|v| v + 4))].concat());
+        // The second is mirrored, so that its own faces look inwards.
+        let (nowhere, apart) = (both(FACES), both(flipped));
+        assert!(nowhere.is_closed && nowhere.volume.is_some() && nowhere.volume_centroid.is_none());
+        assert!(apart.volume_centroid.is_some() && is_positive(&apart.inertia.cast()));
+        assert!(is_positive(&nowhere.inertia.cast()), "{}", nowhere.inertia);
         // A sheet with two sides is closed but holds nothing.
         let sheet = mass_of(&CORNERS, &[FACES[0], flipped[0]]);
         assert_eq!((sheet.is_closed, sheet.volume), (true, None));
