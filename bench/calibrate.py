@@ -10,6 +10,8 @@ import numpy as np
 from sklearn.linear_model import LogisticRegression
 
 MOST_CLEARANCE_MM = 1.0
+LEAST_SINKING_MM = 8.0
+MOST_SINKING_MM = 10.0
 
 
 def poses(path):
@@ -24,6 +26,7 @@ def poses(path):
                 said["jolt_time"],
                 min(said["tilts"]),
                 min(said["clearance"] * 1000.0, MOST_CLEARANCE_MM),
+                min(max(said["tilted_sinking"] * 1000.0 - LEAST_SINKING_MM, 0.0), MOST_SINKING_MM),
             ]
             yield features, hangs, hangs and outcome["robust"], said["probability"], row["pair"]
 
@@ -38,7 +41,7 @@ def fit(name, features, outcomes):
 
 def main():
     features, hangs, robust, said, pairs = (np.array(column) for column in zip(*poses(sys.argv[1])))
-    print("constant, per second, per radian, per mm")
+    print("constant, per second, per radian, per mm of clearance, per mm of sinking")
     fitted = fit("hangs", features, hangs)
     fitted_to_robust = fit("robust", features, robust)
     for name, probability in [("as it is", said), ("fitted", fitted)]:
@@ -48,6 +51,13 @@ def main():
         best = [max(np.flatnonzero(pairs == pair), key=lambda k: probability[k]) for pair in np.unique(pairs)]
         shares = 100 * hangs[best].mean(), 100 * robust[best].mean()
         print(f"best of {len(best)} pairs, {name}: hang {shares[0]:.1f} %, robust {shares[1]:.1f} %")
+    jolt, tilt, clearance, sinking = features.T
+    is_firm = (jolt >= 1.0) & (tilt > 1.0) & (clearance >= MOST_CLEARANCE_MM)
+    for name, of in [("up to", is_firm & (sinking == 0.0)), ("more than", is_firm & (sinking > 0.0))]:
+        print(
+            f"that stay when jolted and tilted, sank by {name} {LEAST_SINKING_MM:g} mm: {of.sum()} poses, "
+            f"hang {100 * hangs[of].mean():.1f} %, robust {100 * robust[of].mean():.1f} %"
+        )
     for low, high in [(0.0, 0.5), (0.5, 0.8), (0.8, 0.9), (0.9, 0.95), (0.95, 0.975), (0.975, 1.0)]:
         of = (fitted >= low) & (fitted < high)
         if of.any():

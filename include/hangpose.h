@@ -46,12 +46,12 @@
 #define HANGPOSE_OBJECT_BYTES_EACH_VERTEX 8
 #define HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE 180
 #define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 312
-#define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 17
+#define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 19
 #define HANGPOSE_SUPPORTER_BYTES_AT_LEAST 17408
-#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 236
+#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 243
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 43008
-#define HANGPOSE_PREDICT_BYTES_EACH_POINT 12
-#define HANGPOSE_PREDICT_BYTES_EACH_POSE 380
+#define HANGPOSE_PREDICT_BYTES_EACH_POINT 9
+#define HANGPOSE_PREDICT_BYTES_EACH_POSE 384
 
 // Version of the structs and functions in this header; another one than the library's is refused at run time, by
 // hangpose_params_init and hangpose_check_abi.
@@ -167,7 +167,8 @@ typedef struct hangpose_params {
   uint32_t voxels;
   // Poses that are let go at most while none stays; once one does, no more than a quarter of that in all; 0 to 10000.
   uint32_t settle_attempts;
-  // No more poses are let go when so many stay firmly, with a probability of 97.5 % or more; 0 to 10000.
+  // No more poses are let go when so many stayed firmly, with a probability of 97.5 % or more, be it twice in the same place; more
+  // give more different poses to choose from; 0 to 10000.
   uint32_t firm_enough;
   // Poses that are less likely to hang than this are none; 0 to 1.
   float min_probability;
@@ -402,6 +403,9 @@ typedef struct hangpose_margin {
   // How long it stays, seconds, when gravity tilts by 21.8 degrees at once, towards where it survives the least tilt, and
   // nothing but friction stops its swing; 1 if it is still there then, 0 if that was not tried, because some tilt is hopeless.
   float jolt_time;
+  // How far the centre of mass sank at most, metres, while gravity tilted by up to 0.9 radians: what comes to lie deeper when it is
+  // shaken does not lie firmly where it is.
+  float tilted_sinking;
   // The least rise of the centre of mass, metres, over the ways of escape that were found, and the highest rise seen
   // where none was found.
   float escape_rise;

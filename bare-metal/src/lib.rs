@@ -16,7 +16,7 @@ const PARAMS: Params = Params {
     voxels: LIMITS.voxels,
     candidates: Candidates::Contacts,
     settle: true,
-    settle_attempts: 128,
+    settle_attempts: 192,
     firm_enough: 1,
     ..Params::paper()
 };

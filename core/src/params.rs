@@ -96,7 +96,8 @@ pub struct Params {
     pub voxels: usize,
     /// Poses that are let go at most while none stays; once one does, no more than a quarter of that in all.
     pub settle_attempts: usize,
-    /// No more poses are let go when so many stay firmly: with a probability of 97.5 % or more.
+    /// No more poses are let go when so many stayed firmly: with a probability of 97.5 % or more, be it twice in the same place. More
+    /// give more different poses to choose from.
     pub firm_enough: usize,
     /// Poses that are less likely to hang than this are none.
     pub min_probability: f32,
@@ -224,8 +225,8 @@ impl Default for Params {
             candidates: Candidates::Contacts,
             settle: true,
             voxels: 400_000,
-            settle_attempts: 128,
-            firm_enough: 3,
+            settle_attempts: 192,
+            firm_enough: 2,
             min_probability: 0.3,
             ..Self::paper()
         }

@@ -106,7 +106,8 @@ pub struct hangpose_params {
     pub voxels: u32,
     /// Poses that are let go at most while none stays; once one does, no more than a quarter of that in all; 0 to 10000.
     pub settle_attempts: u32,
-    /// No more poses are let go when so many stay firmly, with a probability of 97.5 % or more; 0 to 10000.
+    /// No more poses are let go when so many stayed firmly, with a probability of 97.5 % or more, be it twice in the same place; more
+    /// give more different poses to choose from; 0 to 10000.
     pub firm_enough: u32,
     /// Poses that are less likely to hang than this are none; 0 to 1.
     pub min_probability: f32,

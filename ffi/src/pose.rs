@@ -34,6 +34,9 @@ pub struct hangpose_margin {
     /// How long it stays, seconds, when gravity tilts by 21.8 degrees at once, towards where it survives the least tilt, and
     /// nothing but friction stops its swing; 1 if it is still there then, 0 if that was not tried, because some tilt is hopeless.
     pub jolt_time: f32,
+    /// How far the centre of mass sank at most, metres, while gravity tilted by up to 0.9 radians: what comes to lie deeper when it is
+    /// shaken does not lie firmly where it is.
+    pub tilted_sinking: f32,
     /// The least rise of the centre of mass, metres, over the ways of escape that were found, and the highest rise seen
     /// where none was found.
     pub escape_rise: f32,
@@ -152,6 +155,7 @@ impl hangpose_pose {
                 tilts: [NAN; HANGPOSE_DIRECTIONS],
                 least_tilt: NAN,
                 jolt_time: NAN,
+                tilted_sinking: NAN,
                 escape_rise: NAN,
                 escape_ratio: NAN,
                 knock_speed: NAN,
@@ -174,10 +178,26 @@ impl hangpose_pose {
 
 impl From<&Margin> for hangpose_margin {
     fn from(margin: &Margin) -> Self {
-        let &Margin { tilts, jolt_time, escape_rise, escape_ratio, knock_speed, centre_of_mass_radius } =
-            margin;
+        let &Margin {
+            tilts,
+            jolt_time,
+            tilted_sinking,
+            escape_rise,
+            escape_ratio,
+            knock_speed,
+            centre_of_mass_radius,
+        } = margin;
         let least_tilt = margin.least_tilt();
-        Self { tilts, least_tilt, jolt_time, escape_rise, escape_ratio, knock_speed, centre_of_mass_radius }
+        Self {
+            tilts,
+            least_tilt,
+            jolt_time,
+            tilted_sinking,
+            escape_rise,
+            escape_ratio,
+            knock_speed,
+            centre_of_mass_radius,
+        }
     }
 }
 

@@ -54,7 +54,7 @@ fn the_paper_gives_the_same_bytes_everywhere() {
 
 #[test]
 fn the_default_gives_the_same_bytes_everywhere() {
-    let pairs = [("mug.obj", "hook.ply", "936bc63f"), ("scissors.obj", "mug_tree.ply", "3c42f677")];
+    let pairs = [("mug.obj", "hook.ply", "f1af1dce"), ("scissors.obj", "mug_tree.ply", "860d9f69")];
     // All of them, so that one run tells all the new ones.
     let found =
         pairs.map(|(object, supporter, _)| (object, supporter, hash(object, supporter, &Params::default())));

@@ -46,6 +46,8 @@ const MOST_PUSH: f32 = 0.004;
 const LEVEL: f32 = 0.1;
 /// Points around a place that are tried before all others.
 const PROBES: usize = 16;
+/// So many of them make room for what was run into,
+const REMEMBERED: u32 = 8;
 /// ... and from how far around, metres.
 const AROUND: f32 = 0.03;
 
@@ -100,9 +102,11 @@ struct Place {
     bar: Vector,
     /// What it has disappointed.
     tried: f32,
-    /// Some of the points around.
+    /// Some of the points around, and those that were run into last.
     probes: [Point; PROBES],
     probe_count: u32,
+    /// How often one was run into.
+    met: u32,
 }
 
 impl<'a> CandidateSearch<'a> {
@@ -196,7 +200,7 @@ impl<'a> CandidateSearch<'a> {
 
     /// Lays a contact on a place, one way round or the other, if it is clear there.
     fn lay(&mut self, way: usize, place: usize, meter: &mut Meter) -> Result<Option<Pose>, Stop> {
-        let (contact, place_index, place) = (&self.contacts[way / 2], place, &self.places[place]);
+        let (contact, place_index, place) = (&self.contacts[way / 2], place, &mut self.places[place]);
         let down = unit_or(self.scene.0.centre - contact.position, -contact.normal);
         let object_frame = frame(contact.bar_direction, down);
         let (level, bar) = if is_along(way) {
@@ -245,7 +249,7 @@ impl Way {
 fn clear_pose(
     scene: (&Body, &Support),
     contact: &ObjectContact,
-    place: &Place,
+    place: &mut Place,
     rotation: UnitQuaternion<f32>,
     up: Vector,
     meter: &mut Meter,
@@ -269,10 +273,9 @@ fn clear_pose(
         meter.distance_queries(place.probe_count as usize)?;
         if point.is_none() {
             let pose = Pose::from_parts(Translation3::from(shift), rotation);
-            point = first_within(scene, &pose, CLEARANCE, meter)?;
-            if point.is_none() {
-                return Ok(Some(pose));
-            }
+            let Some(met) = first_within(scene, &pose, CLEARANCE, meter)? else { return Ok(Some(pose)) };
+            place.remember(met);
+            point = Some(met);
         }
         let Some(point) = point else { break };
         let (gap, gradient) = field.sample(&Point::from(to_object * (point.coords - shift)));
@@ -290,7 +293,19 @@ impl Place {
         let level = bar - up * bar.dot(&up);
         let level = if level.norm() > 0.2 { level.normalize() } else { any_perpendicular(up) };
         let (probes, probe_count) = probes(support, contact.position);
-        Self { position: contact.position, level, bar, tried: 0.0, probes, probe_count }
+        Self { position: contact.position, level, bar, tried: 0.0, probes, probe_count, met: 0 }
+    }
+
+    /// What one object's contact runs into here, the next is likely to run into as well.
+    fn remember(&mut self, point: Point) {
+        let slot = if self.probe_count < PROBES as u32 {
+            self.probe_count += 1;
+            self.probe_count - 1
+        } else {
+            PROBES as u32 - 1 - self.met % REMEMBERED
+        };
+        self.probes[slot as usize] = point;
+        self.met += 1;
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Object, PredictError, Supporter, predict_bytes};
 use crate::geometry::Pose;
-use crate::mechanics::{Fate, Near, swing_out};
+use crate::mechanics::{Fate, Sleep, Support, swing_out};
 use crate::memory::{Arena, Limits};
 use crate::monitor::{Meter, Monitor, Stop};
 use crate::params::Params;
@@ -32,8 +32,8 @@ pub fn let_go(
     let points = supporter.points().points().len();
     let limits = Limits { points, ..Limits::NONE };
     let mut arena = Arena::new(memory, predict_bytes(&limits))?;
-    let near = arena.slice::<Near>(points)?;
+    let sleeps = arena.slice::<Sleep>(Support::sleepers(points))?;
     let mut meter = Meter::new(monitor);
-    let settled = swing_out((&body, &support), release, &-params.up(), params.friction, near, &mut meter);
+    let settled = swing_out((&body, support), release, &-params.up(), params.friction, sleeps, &mut meter);
     Ok(settled.map(|settled| LetGo { fate: settled.fate, pose: settled.pose }))
 }

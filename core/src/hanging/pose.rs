@@ -76,9 +76,9 @@ impl Rest {
         &self.contacts[..self.contact_count as usize]
     }
 
-    /// Whether it is the same rest as another, as far as a robot cares.
-    pub(super) fn is_like(&self, other: &Self, centre: &Point) -> bool {
-        let apart = self.pose * centre - other.pose * centre;
-        apart.norm() < 0.005 && self.pose.rotation.angle_to(&other.pose.rotation) < 0.1
+    /// Whether another pose is the same, as far as a robot cares.
+    pub(super) fn is_like(&self, other: &Pose, centre: &Point) -> bool {
+        let apart = self.pose * centre - other * centre;
+        apart.norm() < 0.005 && self.pose.rotation.angle_to(&other.rotation) < 0.1
     }
 }

@@ -5,7 +5,7 @@ use super::matching::{MatchingCounts, match_sites};
 use super::settling::{Settling, SettlingCounts};
 use super::{HangabilityCounts, HangingPose, Object, SupportabilityCounts, Supporter};
 use crate::best::Best;
-use crate::mechanics::Near;
+use crate::mechanics::{Sleep, Support};
 use crate::memory::{Arena, Limits, OutOfMemory, array_bytes, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::{Candidates, Params, ParamsError};
@@ -138,8 +138,8 @@ impl core::error::Error for PredictError {}
 
 /// Bytes of working memory for [`predict`], for a supporter within `limits`.
 pub const fn predict_bytes(limits: &Limits) -> usize {
-    let near = array_bytes::<Near>(limits.points);
-    model_bytes(CandidateSearch::bytes().saturating_add(near))
+    let sleeps = array_bytes::<Sleep>(Support::sleepers(limits.points));
+    model_bytes(CandidateSearch::bytes().saturating_add(sleeps))
 }
 
 /// Finds poses in which the object hangs and writes the best to `poses`, best first, as many as it holds.
@@ -182,8 +182,8 @@ pub fn predict<'p>(
     if let Some(body) = &body
         && needs_body
     {
-        let near = arena.slice::<Near>(points)?;
-        let mut settling = Settling { body, support: &support, params, near, counts: counts.settling };
+        let sleeps = arena.slice::<Sleep>(Support::sleepers(points))?;
+        let mut settling = Settling { body, support, params, sleeps, counts: counts.settling };
         let result = match params.candidates {
             Candidates::Sites => {
                 let matched = best.into_slice();
@@ -192,7 +192,7 @@ pub fn predict<'p>(
                 result
             }
             Candidates::Contacts => {
-                let scene = (body, &support);
+                let scene = (body, support);
                 let mut candidates = CandidateSearch::new(
                     scene,
                     object.contacts(),

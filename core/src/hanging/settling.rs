@@ -6,7 +6,7 @@ use super::{HangingPose, probability};
 use crate::best::Best;
 use crate::geometry::Pose;
 use crate::mechanics::{
-    Body, Fate, Near, Settings, Settled, Support, comes_free, firmness, is_off_surface, release_pose, settle,
+    Body, Fate, Settings, Settled, Sleep, Support, comes_free, firmness, is_off_surface, release_pose, settle,
 };
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
@@ -33,7 +33,7 @@ pub struct SettlingCounts {
     pub wedged: usize,
     /// Different rests that are probable enough to be given.
     pub probable: usize,
-    /// Those among them that need no better ones beside them.
+    /// Releases that came to one of them that needs no better ones beside it.
     pub firm: usize,
 }
 
@@ -42,8 +42,8 @@ pub(super) struct Settling<'a> {
     pub(super) body: &'a Body<'a>,
     pub(super) support: &'a Support<'a>,
     pub(super) params: &'a Params,
-    /// Working memory, an entry a point of the supporter.
-    pub(super) near: &'a mut [Near],
+    /// Working memory, of [`Support::sleepers`].
+    pub(super) sleeps: &'a mut [Sleep],
     pub(super) counts: SettlingCounts,
 }
 
@@ -94,13 +94,9 @@ impl Settling<'_> {
         for attempt in 0..attempts {
             meter.progress(attempt as f32 / attempts as f32);
             let Some(candidate) = candidates.next(meter)? else { break };
-            match self.release(&candidate.pose, meter)? {
-                Some(pose) => {
-                    self.offer(pose, poses);
-                    candidates.discount(&candidate, REST_SHARE);
-                }
-                None => candidates.discount(&candidate, 1.0),
-            }
+            let pose = HangingPose { pose: candidate.pose, ..HangingPose::default() };
+            let stays = self.release(&pose, poses, meter)?;
+            candidates.discount(&candidate, if stays { REST_SHARE } else { 1.0 });
             let has_enough = self.counts.firm >= self.params.firm_enough;
             if has_enough || self.counts.probable > 0 && MORE_WHILE_NONE_STAYS * (attempt + 1) >= attempts {
                 break;
@@ -118,88 +114,100 @@ impl Settling<'_> {
         let mut left = 0;
         for index in 0..poses.len() {
             meter.progress(index as f32 / poses.len() as f32);
-            match self.release(&poses[index].pose, meter) {
-                Ok(Some(pose)) => {
-                    let pose = HangingPose { matched: poses[index].matched, ..pose };
-                    let mut firm = Best::filled(&mut poses[..=index], left);
-                    self.offer(pose, &mut firm);
-                    left = firm.len();
-                }
-                Ok(None) => {}
-                Err(stop) => return (left, Err(stop)),
+            let pose = poses[index];
+            let mut firm = Best::filled(&mut poses[..=index], left);
+            if let Err(stop) = self.release(&pose, &mut firm, meter) {
+                return (left, Err(stop));
             }
+            left = firm.len();
         }
         (left, Ok(()))
     }
 
-    /// Offers a pose unless it is improbable or known.
-    fn offer(&mut self, pose: HangingPose, poses: &mut Best<HangingPose>) {
-        let Some(rest) = &pose.rest else { return };
-        let is_known =
-            |other: &HangingPose| other.rest.is_some_and(|other| other.is_like(rest, &self.body.centre));
-        if rest.probability < self.params.min_probability || poses.iter().any(is_known) {
-            return;
-        }
-        self.counts.probable += 1;
-        self.counts.firm += usize::from(rest.probability >= probability::FIRM);
-        poses.offer(pose, is_more_probable);
-    }
-
-    /// What becomes of the object at `release`; `None` if it does not stay.
-    fn release(&mut self, release: &Pose, meter: &mut Meter) -> Result<Option<HangingPose>, Stop> {
+    /// Lets the object go, offers what is probable enough to `poses`, and returns whether it stays.
+    fn release(
+        &mut self,
+        start: &HangingPose,
+        poses: &mut Best<HangingPose>,
+        meter: &mut Meter,
+    ) -> Result<bool, Stop> {
         let scene = (self.body, self.support);
         // What is finer than the field's voxels shows only here.
-        if !is_off_surface(scene, release, candidates::CLEARANCE, meter)? {
-            return Ok(None);
+        if !is_off_surface(scene, &start.pose, candidates::CLEARANCE, meter)? {
+            return Ok(false);
         }
         self.counts.released += 1;
-        let up = self.params.up();
-        let friction = self.params.friction;
-        let settings = Settings::damped(friction);
-        let (settled, from) = self.find_release(release, settings, meter)?;
+        let settled = self.settle(&start.pose, meter)?;
         match settled.fate {
             Fate::Rests => self.counts.at_rest += 1,
             Fate::RotatesOff => self.counts.rotated_off += 1,
             Fate::SlidesOff => self.counts.slid_off += 1,
             Fate::Moves => self.counts.moving += 1,
         }
-        let Some(Release { pose, gap, sinking }) = from else { return Ok(None) };
-        if !comes_free(scene, &settled.pose, &-up, settings, self.near, meter)? {
-            self.counts.wedged += 1;
-            return Ok(None);
+        if settled.fate != Fate::Rests {
+            return Ok(false);
         }
-        let firm = firmness(scene, &settled.pose, &-up, friction, WORTHLESS_TILT, self.near, meter)?;
+        if let Some(known) = self.known(&settled.pose, poses) {
+            self.counts.firm += usize::from(known.probability >= probability::FIRM);
+            return Ok(true);
+        }
+        let Some((Release { pose, gap, sinking }, settled)) = self.find_release(settled, meter)? else {
+            return Ok(false);
+        };
+        let (down, friction) = (-self.params.up(), self.params.friction);
+        if !comes_free(scene, &settled.pose, &down, Settings::damped(friction), self.sleeps, meter)? {
+            self.counts.wedged += 1;
+            return Ok(false);
+        }
+        // What cannot become better than the last of a full list need not be looked at to the end.
+        let last = poses.next_to_go().and_then(|pose| pose.rest).map_or(0.0, |rest| rest.probability);
+        let least = probability::least_tilt(last, gap).max(WORTHLESS_TILT);
+        let firm = firmness(scene, &settled.pose, &down, friction, least, self.sleeps, meter)?;
         let rest = Rest::new(settled.pose, sinking, gap, &firm);
-        Ok(Some(HangingPose { pose, rest: Some(rest), matched: None }))
+        if rest.probability >= self.params.min_probability && self.known(&rest.pose, poses).is_none() {
+            self.counts.probable += 1;
+            self.counts.firm += usize::from(rest.probability >= probability::FIRM);
+            poses.offer(HangingPose { pose, rest: Some(rest), matched: start.matched }, is_more_probable);
+        }
+        Ok(true)
     }
 
-    /// What becomes of the object at `start`, and, if it rests, where to let it go instead, off the supporter but close to that rest.
-    /// What does not come to rest close by from there either is not told to be let go there, but tried from where it comes to then.
+    /// The rest among `poses` that is at `pose` as far as a robot cares.
+    fn known(&self, pose: &Pose, poses: &Best<HangingPose>) -> Option<Rest> {
+        poses.iter().filter_map(|other| other.rest).find(|rest| rest.is_like(pose, &self.body.centre))
+    }
+
+    fn settle(&mut self, start: &Pose, meter: &mut Meter) -> Result<Settled, Stop> {
+        let settings = Settings::damped(self.params.friction);
+        settle((self.body, self.support), start, &-self.params.up(), settings, self.sleeps, meter)
+    }
+
+    /// Where to let the object go, off the supporter but close to where it rests, and where it rests then. What does not come to rest close
+    /// by from there is not told to be let go there, but tried from where it comes to then.
     fn find_release(
         &mut self,
-        start: &Pose,
-        settings: Settings,
+        rests: Settled,
         meter: &mut Meter,
-    ) -> Result<(Settled, Option<Release>), Stop> {
+    ) -> Result<Option<(Release, Settled)>, Stop> {
         let scene = (self.body, self.support);
         let (up, clearance) = (self.params.up(), self.params.clearance);
-        let mut settled = settle(scene, start, &-up, settings, self.near, meter)?;
+        let mut settled = rests;
         for _ in 0..RELEASES {
             if settled.fate != Fate::Rests {
                 break;
             }
-            let (pose, gap) = release_pose(scene, &settled.pose, clearance, &up, self.near, meter)?;
+            let (pose, gap) = release_pose(scene, &settled.pose, clearance, &up, self.sleeps, meter)?;
             if gap < LEAST_GAP || !is_off_surface(scene, &pose, LEAST_GAP, meter)? {
                 break;
             }
-            settled = settle(scene, &pose, &-up, settings, self.near, meter)?;
+            settled = self.settle(&pose, meter)?;
             let centre = &self.body.centre;
             let sinking = up.dot(&(pose * centre - settled.pose * centre));
             if settled.fate == Fate::Rests && sinking < MOST_SINKING {
-                return Ok((settled, Some(Release { pose, gap, sinking })));
+                return Ok(Some((Release { pose, gap, sinking }, settled)));
             }
         }
-        Ok((settled, None))
+        Ok(None)
     }
 }
 

@@ -4,7 +4,7 @@ use super::AnalysisError;
 use super::support_contact::{self, SupportContact};
 use super::supportability::{self, SupportSite, Supportability, SupportabilityCounts};
 use crate::geometry::{Cloud, PointTree, Vector};
-use crate::mechanics::{Patch, Support, fit_patches};
+use crate::mechanics::{Room, Support};
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::{Candidates, Params};
@@ -19,9 +19,7 @@ const UNIT_LENGTH: f32 = 1e-3;
 /// may match it at once.
 #[derive(Clone, Copy)]
 pub struct Supporter<'m> {
-    tree: PointTree<'m>,
-    patches: &'m [Patch],
-    patch_reach: f32,
+    support: Support<'m>,
     contacts: &'m [SupportContact],
     sites: &'m [SupportSite],
     normals: NormalCounts,
@@ -46,7 +44,7 @@ impl<'m> Supporter<'m> {
         let model = PointTree::bytes(points)
             .saturating_add(array_bytes::<SupportSite>(supportability::MAX_SITES))
             .saturating_add(array_bytes::<SupportContact>(support_contact::MAX_CONTACTS))
-            .saturating_add(array_bytes::<Patch>(points));
+            .saturating_add(Support::bytes(points));
         let scratch = larger(
             PointTree::scratch_bytes(points),
             // In the tree's order, and in the cloud's.
@@ -74,7 +72,7 @@ impl<'m> Supporter<'m> {
         let tree = PointTree::build(points, &mut arena)?;
         let sites = arena.slice::<SupportSite>(supportability::MAX_SITES)?;
 
-        let patches = arena.slice::<Patch>(points.len())?;
+        let room = Room::new(points.len(), &mut arena)?;
         let contacts = arena.slice::<SupportContact>(support_contact::MAX_CONTACTS)?;
         let mut scratch = arena.scratch();
         let in_tree_order = scratch.slice::<Vector>(points.len())?;
@@ -95,12 +93,13 @@ impl<'m> Supporter<'m> {
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
 
         let mut counts = SupportabilityCounts::default();
-        let (mut site_count, mut contact_count, mut patch_reach) = (0, 0, 0.0);
+        let (mut site_count, mut contact_count) = (0, 0);
         let found;
-        if params.settle || params.candidates == Candidates::Contacts {
-            let covered = scratch.scratch().slice::<u8>(points.len())?;
-            patch_reach = fit_patches(&tree, in_tree_order, patches, covered);
-        }
+        let support = if params.settle || params.candidates == Candidates::Contacts {
+            Support::fit(tree, in_tree_order, room, scratch.scratch())?
+        } else {
+            Support::bare(tree)
+        };
         match params.candidates {
             Candidates::Sites => {
                 let in_cloud_order = scratch.slice::<Vector>(points.len())?;
@@ -122,12 +121,12 @@ impl<'m> Supporter<'m> {
         }
         let (sites, contacts) = (&sites[..site_count], &contacts[..contact_count]);
         let work = meter.work;
-        Ok(Self { tree, patches, patch_reach, contacts, sites, normals, counts, work, stopped })
+        Ok(Self { support, contacts, sites, normals, counts, work, stopped })
     }
 
     /// The supporter as mechanics sees it.
-    pub(super) fn support(&self) -> Support<'_> {
-        Support { tree: &self.tree, patches: self.patches, reach: self.patch_reach }
+    pub(super) fn support(&self) -> &Support<'m> {
+        &self.support
     }
 
     /// Where something can lie on the supporter: [`Candidates::Contacts`].
@@ -137,7 +136,7 @@ impl<'m> Supporter<'m> {
 
     /// The points, for neighbour queries.
     pub fn points(&self) -> &PointTree<'m> {
-        &self.tree
+        &self.support.tree
     }
 
     /// Where something can be hung, the thinnest site first: [`Candidates::Sites`].

@@ -1,6 +1,6 @@
 //! Whether a pose keeps the object off the supporter.
 
-use super::contact::nearest_on_patch;
+use super::touch::nearest_on_patch;
 use super::{Body, Support};
 use crate::geometry::{Point, Pose};
 use crate::monitor::{Meter, Stop};
@@ -67,18 +67,16 @@ fn first(
     let to_object = pose.inverse();
     let rotation = pose.rotation.to_rotation_matrix();
     let points = support.tree.points();
-    let deepest = |index: usize| {
-        let (patch, at) = (&support.patches[index], to_object * points[index]);
-        if patch.is_empty() {
-            return None;
-        }
+    let deepest = |patch: usize| {
+        let (place, patch) = (support.place(patch), &support.patches[patch]);
+        let at = to_object * place;
         if let Ok(nearest) = nearest_on_patch(body, patch, &rotation, &at, -DEEP)
             && nearest.gap < -DEEP
         {
-            return Some(points[index] + nearest.step);
+            return Some(pose * nearest.at);
         }
         let [from, to] = patch.line().map(|step| at + rotation.inverse_transform_vector(&step));
-        crosses(&from, &to).then(|| points[index])
+        crosses(&from, &to).then_some(place)
     };
     let (mut found, mut queries) = (None, 0);
     support.tree.bvh().descend(|_, node| {
@@ -95,7 +93,7 @@ fn first(
             queries += items.len();
             let is_near = |index: &usize| !is_point_off(&(to_object * points[*index]));
             let near = items.clone().find(is_near).map(|index| points[index]);
-            found = near.or_else(|| items.clone().find_map(deepest));
+            found = near.or_else(|| support.patches_of(&items).find_map(deepest));
         }
         found.is_none()
     });

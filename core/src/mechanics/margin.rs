@@ -1,7 +1,7 @@
 //! How firmly a resting object stays.
 
-use super::contact::Near;
 use super::motion::{Motion, Settings, TIME_STEP};
+use super::neighbourhood::Sleep;
 use super::settle::most_sinking;
 use super::{Body, GRAVITY, Support};
 use crate::geometry::{Point, Pose, Vector, rotate_about};
@@ -25,6 +25,9 @@ pub struct Margin {
     /// but friction stops its swing: as it does when a robot that carries the supporter starts or stops with 0.4 g.
     /// [`Margin::MOST_JOLT_TIME`] if it is still there then; zero if that was not tried, because some tilt is hopeless.
     pub jolt_time: f32,
+    /// How far the centre of mass sank at most, metres, while gravity tilted by up to 0.9 radians: what comes to lie deeper when it is
+    /// shaken does not lie firmly where it is.
+    pub tilted_sinking: f32,
     /// The least rise of the centre of mass, metres, over the ways of escape that were found: what an escape costs over `m g`
     /// (escape energy: Dong and Pokorny, arXiv 2309.01224). An upper bound of the least that any escape costs, and the highest
     /// rise seen where none was found.
@@ -82,6 +85,8 @@ const RATE: f32 = 2.5;
 /// Friction is taken to be so much less while gravity tilts: what tilts at once, as when a robot stops, swings as far again beyond, and
 /// what would hold it in the middle of the swing lets it slip at the end.
 const SLIPPERY: f32 = 0.7;
+/// Up to this tilt, radians, what hangs well does not sink: beyond, what lies in a hook rolls out of it.
+const SINKING_TILT: f32 = 0.9;
 /// Without contact for so long, seconds, it has left.
 const GONE: f32 = 0.1;
 
@@ -93,14 +98,14 @@ pub(crate) fn firmness(
     down: &Vector,
     friction: f32,
     least: f32,
-    near: &mut [Near],
+    sleeps: &mut [Sleep],
     meter: &mut Meter,
 ) -> Result<Firmness, Stop> {
     let body = scene.0;
     let settings = Settings::damped(friction);
     let start = body.at(rest);
     let contacts = {
-        let mut motion = Motion::new(scene, start, settings, near);
+        let mut motion = Motion::new(scene, start, settings, sleeps);
         for _ in 0..3 {
             motion.step(&(down * GRAVITY), meter)?;
         }
@@ -123,9 +128,11 @@ pub(crate) fn firmness(
     let (mut escape, mut highest) = (f32::INFINITY, 0.0_f32);
     let (mut weakest, mut is_hopeless) = (0, false);
     for k in 0..DIRECTIONS {
-        let motion = Motion::new(scene, start, tilting, near);
-        let (held, rise, left) = tilt_until_it_leaves(motion, body, down, &towards(k, down), meter)?;
+        let motion = Motion::new(scene, start, tilting, sleeps);
+        let Tilted { held, rise, sinking, left } =
+            tilt_until_it_leaves(motion, body, down, &towards(k, down), meter)?;
         margin.tilts[k] = held;
+        margin.tilted_sinking = margin.tilted_sinking.max(sinking);
         highest = highest.max(rise);
         if left {
             escape = escape.min(rise);
@@ -139,7 +146,7 @@ pub(crate) fn firmness(
         }
     }
     if !is_hopeless {
-        let motion = Motion::new(scene, start, Settings::undamped(friction), near);
+        let motion = Motion::new(scene, start, Settings::undamped(friction), sleeps);
         margin.jolt_time = jolt_until_it_leaves(motion, body, down, &towards(weakest, down), meter)?;
     }
     margin.escape_rise = if escape.is_finite() { escape } else { highest };
@@ -179,18 +186,29 @@ impl Watch {
     }
 }
 
-/// How far gravity tilted towards `across` before the body left, radians, how high its centre of mass rose until then, and
-/// whether it left at all.
+/// What became of the body when gravity tilted.
+#[derive(Default)]
+struct Tilted {
+    /// How far it had tilted before the body left, radians.
+    held: f32,
+    /// How far the centre of mass rose until then, and how far it sank until [`SINKING_TILT`], at most, metres.
+    rise: f32,
+    sinking: f32,
+    /// Whether it left at all.
+    left: bool,
+}
+
+/// Tilts gravity towards `across`.
 fn tilt_until_it_leaves(
     mut motion: Motion,
     body: &Body,
     down: &Vector,
     across: &Vector,
     meter: &mut Meter,
-) -> Result<(f32, f32, bool), Stop> {
+) -> Result<Tilted, Stop> {
     let mut watch = Watch::new(&motion);
     let steps = (Margin::MOST_TILT / (RATE * TIME_STEP)) as usize;
-    let (mut held, mut highest) = (0.0, 0.0_f32);
+    let mut tilted = Tilted::default();
     for step in 1..=steps {
         let angle = RATE * TIME_STEP * step as f32;
         let (sin, cos) = libm::sincosf(angle);
@@ -198,14 +216,19 @@ fn tilt_until_it_leaves(
         motion.step(&(pull * GRAVITY), meter)?;
         let (moved, has_left) = watch.look(&motion, body, &pull, cos);
         if motion.touches {
-            held = angle;
-            highest = highest.max(-down.dot(&moved));
+            tilted.held = angle;
+            let sunk = down.dot(&moved);
+            tilted.rise = tilted.rise.max(-sunk);
+            if angle < SINKING_TILT {
+                tilted.sinking = tilted.sinking.max(sunk);
+            }
         }
         if has_left {
-            return Ok((held, highest, true));
+            return Ok(Tilted { left: true, ..tilted });
         }
     }
-    Ok(if watch.loose > 0 { (held, highest, true) } else { (Margin::MOST_TILT, highest, false) })
+    let left = watch.loose > 0;
+    Ok(Tilted { held: if left { tilted.held } else { Margin::MOST_TILT }, left, ..tilted })
 }
 
 /// How long the body stays when gravity tilts towards `across` at once, seconds.

@@ -6,8 +6,10 @@
 mod body;
 mod clearance;
 mod contact;
+mod fit;
 mod margin;
 mod motion;
+mod neighbourhood;
 mod odometer;
 mod patch;
 mod release;
@@ -16,18 +18,18 @@ mod solver;
 mod support;
 #[cfg(test)]
 mod tests;
+mod touch;
 
 pub(crate) use body::Body;
 pub(crate) use clearance::{first_within, is_off_surface};
-pub(crate) use contact::Near;
 pub use margin::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
 pub(crate) use margin::{Firmness, firmness};
 pub(crate) use motion::Settings;
-pub(crate) use patch::Patch;
+pub(crate) use neighbourhood::Sleep;
 pub(crate) use release::release_pose;
 pub use settle::Fate;
 pub(crate) use settle::{Settled, comes_free, settle, swing_out};
-pub(crate) use support::{Support, fit_patches};
+pub(crate) use support::{Room, Support};
 
 /// Standard gravity, m/s².
 pub const GRAVITY: f32 = 9.81;

@@ -1,7 +1,8 @@
 //! The body in motion, a step at a time.
 
 use super::body::State;
-use super::contact::{Contacts, Near, Neighbourhood};
+use super::contact::Contacts;
+use super::neighbourhood::{Neighbourhood, Sleep};
 use super::solver::{self, Impulses};
 use super::{Body, GRAVITY, Support};
 use crate::geometry::{Point, Vector};
@@ -55,12 +56,12 @@ pub(crate) struct Motion<'a, 's> {
 }
 
 impl<'a, 's> Motion<'a, 's> {
-    /// From `state`. `near` is working memory, an entry a point of the supporter.
+    /// From `state`. `sleeps` is working memory, of [`Support::sleepers`].
     pub(crate) fn new(
         (body, support): (&'a Body, &'a Support),
         state: State,
         settings: Settings,
-        near: &'s mut [Near],
+        sleeps: &'s mut [Sleep],
     ) -> Self {
         Self {
             state,
@@ -70,7 +71,7 @@ impl<'a, 's> Motion<'a, 's> {
             settings,
             contacts: Contacts::new(),
             impulses: Impulses::new(),
-            neighbourhood: Neighbourhood::new(near),
+            neighbourhood: Neighbourhood::new(sleeps),
         }
     }
 

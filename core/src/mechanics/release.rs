@@ -1,6 +1,7 @@
 //! From where to let go so that the object comes to rest as found: a little off every contact.
 
-use super::contact::{Contacts, Near, Neighbourhood};
+use super::contact::Contacts;
+use super::neighbourhood::{Neighbourhood, Sleep};
 use super::{Body, Support, solver};
 use crate::geometry::{Pose, Vector};
 use crate::monitor::{Meter, Stop};
@@ -12,7 +13,7 @@ pub(crate) fn release_pose(
     rest: &Pose,
     clearance: f32,
     up: &Vector,
-    near: &mut [Near],
+    sleeps: &mut [Sleep],
     meter: &mut Meter,
 ) -> Result<(Pose, f32), Stop> {
     /// First straight up, which is how an object is taken off,
@@ -21,7 +22,7 @@ pub(crate) fn release_pose(
     const STEPS: usize = 30;
     let body = scene.0;
     let mut state = body.at(rest);
-    let mut neighbourhood = Neighbourhood::new(near);
+    let mut neighbourhood = Neighbourhood::new(sleeps);
     let mut contacts = Contacts::new();
     let mut best = (*rest, f32::NEG_INFINITY);
     for step in 0..STEPS {

@@ -1,7 +1,7 @@
 //! What becomes of the body when it is let go.
 
-use super::contact::Near;
 use super::motion::{Motion, Settings};
+use super::neighbourhood::Sleep;
 use super::{Body, GRAVITY, Support};
 use crate::geometry::{Pose, Vector};
 use crate::monitor::{Meter, Stop};
@@ -47,10 +47,10 @@ pub(crate) fn settle(
     release: &Pose,
     down: &Vector,
     settings: Settings,
-    near: &mut [Near],
+    sleeps: &mut [Sleep],
     meter: &mut Meter,
 ) -> Result<Settled, Stop> {
-    let mut motion = Motion::new((body, support), body.at(release), settings, near);
+    let mut motion = Motion::new((body, support), body.at(release), settings, sleeps);
     let fate = follow(&mut motion, body, down, STEPS, meter)?.unwrap_or(Fate::Moves);
     Ok(Settled { fate, pose: body.pose(&motion.state) })
 }
@@ -66,11 +66,11 @@ pub(crate) fn swing_out(
     release: &Pose,
     down: &Vector,
     friction: f32,
-    near: &mut [Near],
+    sleeps: &mut [Sleep],
     meter: &mut Meter,
 ) -> Result<Settled, Stop> {
     let settings = Settings::swinging(friction);
-    let mut motion = Motion::new((body, support), body.at(release), settings, near);
+    let mut motion = Motion::new((body, support), body.at(release), settings, sleeps);
     let fate = follow(&mut motion, body, down, SWINGING_STEPS, meter)?;
     let hangs = motion.touches && motion.state.velocity.norm() < SLOW;
     let fate = fate.unwrap_or(if hangs { Fate::Rests } else { Fate::Moves });
@@ -115,11 +115,11 @@ pub(crate) fn comes_free(
     rest: &Pose,
     down: &Vector,
     settings: Settings,
-    near: &mut [Near],
+    sleeps: &mut [Sleep],
     meter: &mut Meter,
 ) -> Result<bool, Stop> {
     let start = body.at(rest);
-    let mut motion = Motion::new((body, support), start, settings, near);
+    let mut motion = Motion::new((body, support), start, settings, sleeps);
     for _ in 0..FREEING_STEPS {
         motion.step(&(-down * GRAVITY), meter)?;
         if !motion.touches && (motion.state.centre - start.centre).norm() > FREE {

@@ -1,11 +1,15 @@
 //! Rests, falls and margins with known answers: `docs/MECHANICS.md` derives them.
 
 use super::body::State;
+use super::contact::{Contact, Contacts};
 use super::motion::{Motion, TIME_STEP};
+use super::neighbourhood::Neighbourhood;
+use super::patch::Patch;
 use super::*;
 use crate::geometry::{DistanceField, MassProperties, Point, PointTree, Pose, Surface, Vector};
 use crate::memory::{Arena, model_bytes};
 use crate::monitor::{Meter, Monitor};
+use crate::random::Random;
 use crate::test_shapes::{self, Shape};
 use nalgebra::{Translation3, UnitQuaternion};
 use std::vec::Vec;
@@ -23,7 +27,7 @@ struct Scene {
 struct Lab<'a> {
     body: Body<'a>,
     support: Support<'a>,
-    near: Vec<Near>,
+    sleeps: Vec<Sleep>,
 }
 
 impl Scene {
@@ -35,7 +39,10 @@ impl Scene {
         const VOXELS: usize = 200_000;
         let (mesh, (points, normals)) = (self.object.mesh(), &self.cloud);
         let (triangles, count) = (mesh.triangles().len(), points.len());
-        let lasting = Surface::bytes(triangles) + DistanceField::bytes(VOXELS) + PointTree::bytes(count);
+        let lasting = Surface::bytes(triangles)
+            + DistanceField::bytes(VOXELS)
+            + PointTree::bytes(count)
+            + Support::bytes(count);
         let scratch = [
             MassProperties::scratch_bytes(mesh.vertices().len(), triangles),
             Surface::scratch_bytes(triangles),
@@ -51,8 +58,8 @@ impl Scene {
         let points: Vec<Point> = points.iter().map(|p| Point::from(*p)).collect();
         let tree = PointTree::build(&points, &mut arena).unwrap();
         let normals: Vec<Vector> = tree.order().iter().map(|&i| Vector::from(normals[i as usize])).collect();
-        let (mut patches, mut covered) = (vec![Patch::default(); count], vec![0; count]);
-        let reach_of_patches = fit_patches(&tree, &normals, &mut patches, &mut covered);
+        let room = Room::new(count, &mut arena).unwrap();
+        let support = Support::fit(tree, &normals, room, arena.scratch()).unwrap();
         let centre = mass.volume_centroid.expect("the test shapes are closed");
         let reach = mesh.vertices().iter().map(|v| (Point::from(*v) - centre).norm()).fold(0.0, f32::max);
         let body = Body {
@@ -63,8 +70,7 @@ impl Scene {
             reach,
             extent: surface.aabb().extents().max(),
         };
-        let support = Support { tree: &tree, patches: &patches, reach: reach_of_patches };
-        check(&mut Lab { body, support, near: vec![Near::default(); count] })
+        check(&mut Lab { body, support, sleeps: vec![Sleep::default(); Support::sleepers(count)] })
     }
 }
 
@@ -82,7 +88,7 @@ impl Lab<'_> {
     fn settle(&mut self, pose: &Pose, friction: f32) -> (Fate, Pose) {
         let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
         let (settings, mut meter) = (Settings::damped(friction), Meter::new(&monitor));
-        let settled = settle(scene, pose, &DOWN, settings, &mut self.near, &mut meter).unwrap();
+        let settled = settle(scene, pose, &DOWN, settings, &mut self.sleeps, &mut meter).unwrap();
         (settled.fate, settled.pose)
     }
 
@@ -104,7 +110,7 @@ impl Lab<'_> {
     ) -> State {
         let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
         let mut meter = Meter::new(&monitor);
-        let mut motion = Motion::new(scene, self.body.at(pose), settings, &mut self.near);
+        let mut motion = Motion::new(scene, self.body.at(pose), settings, &mut self.sleeps);
         for _ in 0..(seconds / TIME_STEP) as usize {
             motion.step(&(down * GRAVITY), &mut meter).unwrap();
             see(&self.body, &motion.state);
@@ -120,7 +126,7 @@ impl Lab<'_> {
 
     fn firmness(&mut self, rest: &Pose) -> margin::Firmness {
         let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
-        firmness(scene, rest, &DOWN, FRICTION, 0.0, &mut self.near, &mut Meter::new(&monitor)).unwrap()
+        firmness(scene, rest, &DOWN, FRICTION, 0.0, &mut self.sleeps, &mut Meter::new(&monitor)).unwrap()
     }
 
     fn is_clear(&self, pose: &Pose, clearance: f32) -> bool {
@@ -203,40 +209,88 @@ fn a_ring_hangs_straight_below_the_rod() {
     });
 }
 
+/// The place of a patch that is next to a step from its point: its offset along and across, and the step there.
+fn next_to(patch: &Patch, step: Vector) -> ([f32; 2], Vector) {
+    let [along, across, normal] = patch.axes();
+    let offset = patch.clamp([step.dot(&along), step.dot(&across)]);
+    (offset, along * offset[0] + across * offset[1] - normal * patch.depth(offset))
+}
+
 #[test]
 fn a_patch_knows_the_bar_and_its_end() {
     // A rod of 5 mm along x, on which gravity is across the middle and beyond its end.
     Scene::new(ring(), rod(Vector::x(), 0.06, 0.005)).try_out(|lab| {
-        let (points, patches) = (lab.support.tree.points(), lab.support.patches);
+        let support = &lab.support;
         let of_bar = |x: [f32; 2]| {
             let between =
                 move |point: &Point| (x[0]..x[1]).contains(&point.x) && point.y.hypot(point.z) > 0.0045;
-            points.iter().zip(patches).filter(move |(point, patch)| between(point) && !patch.is_empty())
+            support.places().zip(support.patches).filter(move |(point, _)| between(point))
         };
         assert!(of_bar([-0.02, 0.02]).count() > 50);
         for (point, patch) in of_bar([-0.02, 0.02]) {
             let outward = Vector::new(0.0, point.y, point.z).normalize();
             // What leans along the bar is pushed straight out of it, and what leans across is not.
             let lean = (outward + Vector::x() * 0.8).normalize();
-            let pushed = patch.push(lean, &(Vector::x() * 0.002));
+            let pushed = patch.push(lean, next_to(patch, Vector::x() * 0.002).0);
             assert!((pushed - outward).norm() < 0.1, "{pushed} at {point}");
             // Its rim lies on the rod, not on a plane: 2 mm aside that is 0.4 mm higher.
-            let step = patch.step_towards(&(outward.cross(&Vector::x()) * 0.002));
+            let (offset, step) = next_to(patch, outward.cross(&Vector::x()) * 0.002);
             let aside = (point + step).coords.yz();
             assert!((aside.norm() - 0.005).abs() < 0.00015, "{aside} at {point}");
             // And there it pushes away from the rod's axis.
             let away = Vector::new(0.0, aside.x, aside.y).normalize();
-            let pushed = patch.push(away, &step);
+            let pushed = patch.push(away, offset);
             assert!((pushed - away).norm() < 0.05, "{pushed} instead of {away} at {point}");
+        }
+        // What stands for its flat ends does not stick out over their rims by a millimetre, as corners would.
+        let ends = support.places().zip(support.patches).filter(|(_, patch)| patch.axes()[2].x.abs() > 0.9);
+        for (point, patch) in ends {
+            for k in 0..16 {
+                let (sin, cos) = (core::f32::consts::TAU * k as f32 / 16.0).sin_cos();
+                let place = point + next_to(patch, Vector::new(0.0, cos, sin) * 0.01).1;
+                assert!(place.y.hypot(place.z) < 0.0058, "{place} of the patch at {point}");
+            }
         }
         // At the very end what leans outwards is pushed off.
         let lean = |point: &Point| (Vector::new(0.0, point.y, point.z).normalize() + Vector::x()).normalize();
         let pushed_off = of_bar([0.0285, 0.0301]).filter(|(point, patch)| {
-            let step = patch.step_towards(&(Vector::x() * 0.002));
-            (patch.push(lean(point), &step) - lean(point)).norm() < 0.1
+            let (offset, _) = next_to(patch, Vector::x() * 0.002);
+            (patch.push(lean(point), offset) - lean(point)).norm() < 0.1
         });
         let all = of_bar([0.0285, 0.0301]).count();
         assert!(all > 5 && pushed_off.count() > 3 * all / 4, "{all}");
+    });
+}
+
+#[test]
+fn what_sleeps_is_not_missed() {
+    // A ring on a rod, pushed and turned about at random around where it rests, and farther and farther off it.
+    Scene::new(ring(), rod(Vector::x(), 0.06, 0.004)).try_out(|lab| {
+        let scene = (&lab.body, &lab.support);
+        let (monitor, mut random) = (Monitor::new(), Random::new(8));
+        let mut meter = Meter::new(&monitor);
+        let mut state = lab.body.at(&on_rod());
+        let mut awake = vec![Sleep::default(); lab.sleeps.len()];
+        let mut neighbourhood = Neighbourhood::new(&mut lab.sleeps);
+        let mut contacts = Contacts::new();
+        let mut found = 0;
+        for step in 0..4000 {
+            neighbourhood.carry_no_more();
+            neighbourhood.update(&mut contacts, scene, &state, (0.001, 0.0), &mut meter).unwrap();
+            let (mut all, mut anew) = (Contacts::new(), Neighbourhood::new(&mut awake));
+            anew.update(&mut all, scene, &state, (0.001, 0.0), &mut meter).unwrap();
+            found += all.len();
+            for contact in &all {
+                let is_same = |other: &Contact| other.index == contact.index && other.gap == contact.gap;
+                assert!(contacts.iter().any(is_same), "{step}: {contact:?} is not among {contacts:?}");
+            }
+            let mut vector = |size: f32| Vector::from([(); 3].map(|()| (random.next_f32() - 0.5) * size));
+            let back = (on_rod() * lab.body.centre - state.centre) * 0.02;
+            let (shift, turn) = (vector(0.0008) + back, vector(0.02));
+            neighbourhood.moves(&state, &shift, &turn);
+            state.advance(&shift, &turn);
+        }
+        assert!(found > 4000, "{found}");
     });
 }
 
@@ -258,10 +312,10 @@ fn a_bar_with_a_round_end_is_known_from_few_points() {
     });
     let cloud = (points.collect(), (0..COUNT).map(|i| normal_at(i).into()).collect());
     Scene::new(ring(), cloud).try_out(|lab| {
-        let patches = lab.support.tree.points().iter().zip(lab.support.patches);
-        for (point, patch) in patches.filter(|(point, patch)| point.x > -0.05 && !patch.is_empty()) {
+        let patches = lab.support.places().zip(lab.support.patches);
+        for (point, patch) in patches.filter(|(point, _)| point.x > -0.05) {
             for side in [Vector::x(), -Vector::x(), Vector::y(), -Vector::y(), Vector::z(), -Vector::z()] {
-                let step = patch.step_towards(&(side * 0.01));
+                let (offset, step) = next_to(patch, side * 0.01);
                 let place = point + step;
                 let off = place - Point::new(place.x.min(0.0), 0.0, 0.0);
                 assert!(
@@ -271,7 +325,7 @@ fn a_bar_with_a_round_end_is_known_from_few_points() {
                 // It goes on beyond the patch, so that nothing is pushed along it.
                 if point.x < -0.008 {
                     let lean = (off.normalize() + side.x * Vector::x()).normalize();
-                    assert!(patch.push(lean, &step).x.abs() < 0.1, "along the bar at {place}");
+                    assert!(patch.push(lean, offset).x.abs() < 0.1, "along the bar at {place}");
                 }
             }
         }
@@ -309,22 +363,15 @@ fn a_wire_is_known_by_the_line_of_its_points() {
     let normals = (-24..=24).map(|k| [0.0, around(k).0, around(k).1]);
     let thin_ring = test_shapes::torus(0.030, 0.002, 72, 24);
     Scene::new(thin_ring, (points.collect(), normals.collect())).try_out(|lab| {
-        let middle =
-            lab.support.tree.points().iter().zip(lab.support.patches).filter(|(p, _)| p.x.abs() < 0.1);
+        let middle = lab.support.places().zip(lab.support.patches).filter(|(p, _)| p.x.abs() < 0.1);
         for (point, patch) in middle {
-            let places: Vec<_> = patch.stations().map(|station| point + station).collect();
-            let [first, .., last] = places[..] else { panic!("a wire has stations") };
-            assert!((last - first).norm() > 0.006, "as far as to the next points: {first} to {last}");
-            for (place, station) in places.iter().zip(patch.stations()) {
+            assert!(patch.extents[0] > 0.003, "as far as to the next points");
+            for part in [-1.0, 0.0, 1.0] {
+                let [along, _, normal] = patch.axes();
+                let place = point + along * (part * patch.extents[0]) - normal * patch.depth([0.0; 2]);
                 assert!(place.coords.yz().norm() < 0.0002, "on the axis: {place}");
-                for side in [Vector::y(), -Vector::y(), Vector::z(), -Vector::z()] {
-                    let facing = point + patch.facing(station, &-side);
-                    assert!(
-                        (facing - place - side * 0.001).norm() < 0.0002,
-                        "{facing} from {place} to {side}"
-                    );
-                }
             }
+            assert!((patch.wire_radius() - 0.001).abs() < 0.0002, "{}", patch.wire_radius());
         }
         // Its axis along x, between two points of the wire: there it hangs, and the wire does not go through it.
         let upright = |z: f32| Pose::from_parts(Translation3::new(0.003, 0.0, z), turned(Vector::y(), 90.0));
@@ -609,7 +656,7 @@ fn a_deep_hook_is_firmer_than_a_shallow_one() {
         hook(lip).try_out(|lab| margin = lab.firmness(&rest).margin);
         margin
     };
-    let (none, shallow, low, deep) = (firmness(0.0), firmness(0.0005), firmness(0.001), firmness(0.006));
+    let (none, shallow, low, deep) = (firmness(0.0), firmness(0.0005), firmness(0.0012), firmness(0.006));
     let margins = [none, shallow, low, deep];
     for k in [0, 4] {
         assert!(none.tilts[k] < low.tilts[k] && low.tilts[k] < deep.tilts[k], "{margins:?}");
@@ -643,7 +690,7 @@ fn a_release_is_off_by_the_clearance() {
         let rest = lab.rest(&on_rod(), FRICTION);
         let (monitor, clearance) = (Monitor::new(), 0.001);
         let (scene, mut meter) = ((&lab.body, &lab.support), Meter::new(&monitor));
-        let (pose, gap) = release_pose(scene, &rest, clearance, &-DOWN, &mut lab.near, &mut meter).unwrap();
+        let (pose, gap) = release_pose(scene, &rest, clearance, &-DOWN, &mut lab.sleeps, &mut meter).unwrap();
         assert_eq!(gap, clearance);
         // The points lie between the patches of their neighbours, which may be off by a little.
         assert!(lab.is_clear(&pose, 0.0008) && !lab.is_clear(&rest, 0.0008));

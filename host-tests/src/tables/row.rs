@@ -63,6 +63,8 @@ pub struct Said {
     pub tilts: [f32; 8],
     /// Seconds that it stays when jolted.
     pub jolt_time: f32,
+    /// While gravity tilts, metres.
+    pub tilted_sinking: f32,
     /// Metres per second.
     pub knock_speed: f32,
     /// The rise of an escape over the lever.
@@ -81,6 +83,7 @@ impl From<&Rest> for Said {
             probability: rest.probability,
             tilts: rest.margin.tilts,
             jolt_time: rest.margin.jolt_time,
+            tilted_sinking: rest.margin.tilted_sinking,
             knock_speed: rest.margin.knock_speed,
             escape_ratio: rest.margin.escape_ratio,
             clearance: rest.clearance,

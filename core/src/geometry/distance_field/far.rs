@@ -1,25 +1,37 @@
 //! How far the blocks without bricks are from the mesh.
 
-use super::Entry;
-use super::brick::BLOCK;
+use super::brick::{BLOCK, STEP};
+use super::frame::Frame;
 use super::layout::Layout;
+use super::nearest::Nearest;
+use super::{Entry, MARGIN, MARGIN_PART};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 
 /// Fills in the distance of every block without a brick.
 ///
 /// All of the mesh is in blocks with bricks, so the centre of another block is at least as far from the mesh as from the
-/// closest of those blocks. That distance is found an axis at a time.
+/// closest of those blocks. That distance is found an axis at a time. Close to the bricks, where it is far less than the distance to the
+/// mesh, the nearest triangles spread on from them: a block asks the triangles that its neighbours found nearest.
 pub(super) struct Far<'a> {
     pub(super) layout: &'a Layout,
     pub(super) grid: &'a mut [u32],
+    pub(super) nearest: &'a Nearest<'a>,
+    pub(super) frames: &'a [Frame],
     /// 2 for a block that is inside.
     pub(super) signs: &'a [u8],
 }
 
 /// Bytes of working memory for a grid of `blocks`.
 pub(super) const fn scratch_bytes(blocks: usize) -> usize {
-    array_bytes::<f32>(blocks).saturating_mul(2)
+    array_bytes::<f32>(blocks).saturating_mul(2).saturating_add(array_bytes::<u32>(blocks))
 }
+
+/// Blocks closer than this to one with a brick, in blocks, ask their neighbours,
+const CLOSE: f32 = 4.0;
+/// so often at most.
+const ROUNDS: usize = 8;
+/// In the place of a triangle that is not known.
+const NONE: u32 = u32::MAX;
 
 /// Square of the distance along one axis from the centre of a block to another block `steps` away, in blocks.
 fn gap_squared(steps: usize) -> f32 {
@@ -58,12 +70,67 @@ impl Far<'_> {
             core::mem::swap(&mut from, &mut to);
             step *= count;
         }
-        for ((entry, &sign), &squared) in self.grid.iter_mut().zip(self.signs).zip(from.iter()) {
+        let triangles = scratch.slice::<u32>(self.grid.len())?;
+        self.ask_neighbours(from, to, triangles);
+        let distances = from.iter().zip(to.iter());
+        for ((entry, &sign), (&squared, &to_triangle)) in self.grid.iter_mut().zip(self.signs).zip(distances)
+        {
             if let Entry::Far(_) = Entry::unpack(*entry) {
-                let distance = libm::sqrtf(squared) * BLOCK as f32;
+                let to_brick = libm::sqrtf(squared) * BLOCK as f32;
+                let to_triangle = libm::sqrtf(to_triangle);
+                let distance = if to_triangle.is_finite() {
+                    to_brick.max(to_triangle - MARGIN - MARGIN_PART * to_triangle)
+                } else {
+                    to_brick
+                };
                 *entry = Entry::Far(if sign == super::sign::INSIDE { -distance } else { distance }).pack();
             }
         }
         Ok(())
+    }
+
+    /// Finds a near triangle for the centre of every block that is close to a brick, and the square of the distance to it, in voxels;
+    /// infinite for others. `to_bricks` are the squares of the distances to bricks, in blocks.
+    fn ask_neighbours(&self, to_bricks: &[f32], squares: &mut [f32], triangles: &mut [u32]) {
+        squares.fill(f32::INFINITY);
+        triangles.fill(NONE);
+        for round in 0..ROUNDS {
+            let mut changed = false;
+            for k in 0..self.grid.len() {
+                // There and back, so that it spreads far at once.
+                let block = if round % 2 == 0 { k } else { self.grid.len() - 1 - k };
+                let is_far = matches!(Entry::unpack(self.grid[block]), Entry::Far(_));
+                if !is_far || to_bricks[block] > CLOSE * CLOSE {
+                    continue;
+                }
+                let (place, centre) = (self.layout.place(block), self.layout.centre(block));
+                for (axis, step) in STEP.into_iter().enumerate() {
+                    for forward in [false, true] {
+                        let Some(next) = self.layout.beside(place, axis, forward) else { continue };
+                        let triangle = match Entry::unpack(self.grid[next]) {
+                            // The middle of the side that they have in common.
+                            Entry::Brick(brick) => {
+                                let middle = STEP.iter().sum::<usize>() * (BLOCK as usize / 2);
+                                let half = BLOCK as usize / 2 * step;
+                                let node = if forward { middle - half } else { middle + half };
+                                self.nearest.triangles[brick][node]
+                            }
+                            Entry::Far(_) => triangles[next],
+                        };
+                        if triangle == NONE || triangle == triangles[block] {
+                            continue;
+                        }
+                        let square = self.frames[triangle as usize].distance_squared(&centre);
+                        if square < squares[block] {
+                            (squares[block], triangles[block]) = (square, triangle);
+                            changed = true;
+                        }
+                    }
+                }
+            }
+            if !changed {
+                break;
+            }
+        }
     }
 }

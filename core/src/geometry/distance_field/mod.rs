@@ -127,7 +127,7 @@ impl<'m> DistanceField<'m> {
 
         let far_signs = scratch.slice::<u8>(grid.len())?;
         sign::find(surface, &layout, grid, places, &nearest, frames, nodes, far_signs, scratch.scratch())?;
-        Far { layout: &layout, grid, signs: far_signs }.fill(scratch)?;
+        Far { layout: &layout, grid, nearest: &nearest, frames, signs: far_signs }.fill(scratch)?;
         let Aabb { min, max } = surface.aabb();
         let aabb = Aabb { min: layout.in_voxels(&min).into(), max: layout.in_voxels(&max).into() };
         Ok(Self { layout, aabb, grid, nodes })
@@ -158,12 +158,47 @@ impl<'m> DistanceField<'m> {
     pub(crate) fn sample_near(&self, point: &Point) -> Result<(f32, Vector), f32> {
         let local = self.layout.in_voxels(point);
         match self.layout.locate(&local) {
-            None => Err((local - self.layout.clamp(&local)).norm() * self.layout.voxel),
+            None => Err(self.distance(point)),
             Some(at) => match Entry::unpack(self.grid[at.0]) {
-                Entry::Far(distance) => Err(self.bound(&local, at.0, distance)),
+                Entry::Far(distance) => Err(self.bound(&local, distance)),
                 Entry::Brick(_) => Ok(self.sample_at(&local, at)),
             },
         }
+    }
+
+    /// How far it is at least from `point` to where the distance is interpolated, metres.
+    pub(crate) fn way_to_bricks(&self, point: &Point) -> f32 {
+        let local = self.layout.in_voxels(point);
+        let Some((block, _)) = self.layout.locate(&local) else {
+            return (local - self.layout.clamp(&local)).norm() * self.layout.voxel;
+        };
+        // How far the blocks before, here and behind are along each axis, squared; at the border there are none.
+        let squares = [0, 1, 2].map(|axis| {
+            let last = self.layout.blocks[axis] - 1;
+            let place = local[axis] as u32 / BLOCK;
+            let before = local[axis] - (place * BLOCK) as f32;
+            let behind = BLOCK as f32 - before;
+            let square = |gap: f32, is_none: bool| if is_none { f32::INFINITY } else { gap * gap };
+            [square(before, place == 0), 0.0, square(behind, place == last)]
+        });
+        // Of the next blocks but one nothing is known.
+        let mut least = BLOCK as f32 * BLOCK as f32;
+        let layer = (self.layout.blocks[0] * self.layout.blocks[1]) as usize;
+        for (z, square_z) in squares[2].into_iter().enumerate() {
+            for (y, square_y) in squares[1].into_iter().enumerate() {
+                for (x, square_x) in squares[0].into_iter().enumerate() {
+                    let square = square_x + square_y + square_z;
+                    if square < least {
+                        let ahead = block + x + y * self.layout.blocks[0] as usize + z * layer;
+                        let next = ahead - 1 - self.layout.blocks[0] as usize - layer;
+                        if let Entry::Brick(_) = Entry::unpack(self.grid[next]) {
+                            least = square;
+                        }
+                    }
+                }
+            }
+        }
+        libm::sqrtf(least) * self.layout.voxel
     }
 
     /// The same distance as [`sample`](Self::sample) gives, in metres, without the gradient.
@@ -191,7 +226,7 @@ impl<'m> DistanceField<'m> {
                 let (y0, y1) = (x00 + (x10 - x00) * t[1], x01 + (x11 - x01) * t[1]);
                 self.in_metres(y0 + (y1 - y0) * t[2])
             }
-            Entry::Far(distance) => self.bound(local, block, distance),
+            Entry::Far(distance) => self.bound(local, distance),
         }
     }
 
@@ -211,7 +246,7 @@ impl<'m> DistanceField<'m> {
                 let gradient = Vector::new(dx0 + (dx1 - dx0) * t[2], dy0 + (dy1 - dy0) * t[2], y1 - y0);
                 (self.in_metres(y0 + (y1 - y0) * t[2]), unit_or(gradient, Vector::zeros()))
             }
-            Entry::Far(distance) => (self.bound(local, block, distance), self.slope(block)),
+            Entry::Far(distance) => (self.bound(local, distance), self.slope(block)),
         }
     }
 
@@ -245,8 +280,14 @@ impl<'m> DistanceField<'m> {
     }
 
     /// What is certain of the distance in a block without a brick, in metres.
-    fn bound(&self, local: &Vector, block: usize, distance: f32) -> f32 {
-        let off_centre = black_box(local - self.layout.centre(block)).norm();
+    #[inline]
+    fn bound(&self, local: &Vector, distance: f32) -> f32 {
+        const HALF: f32 = BLOCK as f32 / 2.0;
+        let off_centre =
+            [0, 1, 2].map(|axis| local[axis] - (local[axis] as u32 / BLOCK * BLOCK) as f32 - HALF);
+        let square =
+            off_centre[0] * off_centre[0] + off_centre[1] * off_centre[1] + off_centre[2] * off_centre[2];
+        let off_centre = libm::sqrtf(square);
         let size = (distance.abs() - off_centre).max(BAND) * self.layout.voxel;
         // A block that is inside may reach out of the box, through the opening of an open mesh.
         if distance < 0.0 && self.aabb.contains(&Point::from(*local)) { -size } else { size }
