@@ -116,7 +116,8 @@ fn pose_words(hanging: &HangingPose) -> Vec<u32> {
         words.extend(bits(&[rest.sinking, rest.clearance]));
         let margin = &rest.margin;
         words.extend(bits(&margin.tilts));
-        words.extend(bits(&[margin.least_tilt(), margin.jolt_time, margin.escape_rise, margin.escape_ratio]));
+        words.extend(bits(&[margin.least_tilt(), margin.jolt_time, margin.tilted_sinking]));
+        words.extend(bits(&[margin.escape_rise, margin.escape_ratio]));
         words.extend(bits(&[margin.knock_speed, margin.centre_of_mass_radius]));
         words.push(rest.contacts().len() as u32);
         for place in 0..MAX_CONTACTS {
@@ -126,7 +127,7 @@ fn pose_words(hanging: &HangingPose) -> Vec<u32> {
             words.push(contact.force.to_bits());
         }
     } else {
-        words.extend([f32::NAN.to_bits(); 1 + 7 + 2 + DIRECTIONS + 6]);
+        words.extend([f32::NAN.to_bits(); 1 + 7 + 2 + DIRECTIONS + 7]);
         words.extend([0; 1 + 7 * MAX_CONTACTS]);
     }
     words.push(u32::from(hanging.matched.is_some()));
