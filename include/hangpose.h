@@ -508,7 +508,7 @@ typedef struct hangpose_prediction {
   uint32_t settling_wedged;
   // Different rests that are probable enough to be given.
   uint32_t settling_probable;
-  // Those among them that need no better ones beside them.
+  // Releases that came to one of them that needs no better ones beside it.
   uint32_t settling_firm;
   // Rays cast.
   uint64_t rays;

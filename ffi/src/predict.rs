@@ -54,7 +54,7 @@ pub struct hangpose_prediction {
     pub settling_wedged: u32,
     /// Different rests that are probable enough to be given.
     pub settling_probable: u32,
-    /// Those among them that need no better ones beside them.
+    /// Releases that came to one of them that needs no better ones beside it.
     pub settling_firm: u32,
     /// Rays cast.
     pub rays: u64,

@@ -46,10 +46,10 @@ const MOST_PUSH: f32 = 0.004;
 const LEVEL: f32 = 0.1;
 /// Points around a place that are tried before all others.
 const PROBES: usize = 16;
-/// So many of them make room for what was run into,
-const REMEMBERED: u32 = 8;
 /// ... and from how far around, metres.
 const AROUND: f32 = 0.03;
+/// So many of them make room for what was run into.
+const REMEMBERED: u32 = 8;
 
 /// A pose that is clear of the supporter.
 #[derive(Clone, Copy, Debug)]

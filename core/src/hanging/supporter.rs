@@ -44,7 +44,7 @@ impl<'m> Supporter<'m> {
         let model = PointTree::bytes(points)
             .saturating_add(array_bytes::<SupportSite>(supportability::MAX_SITES))
             .saturating_add(array_bytes::<SupportContact>(support_contact::MAX_CONTACTS))
-            .saturating_add(Support::bytes(points));
+            .saturating_add(Room::bytes(points));
         let scratch = larger(
             PointTree::scratch_bytes(points),
             // In the tree's order, and in the cloud's.

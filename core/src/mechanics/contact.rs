@@ -1,7 +1,11 @@
 //! The contacts that a step is solved for.
 
+use super::body::State;
+use super::touch::Nearest;
+use super::{Body, Support};
 use crate::geometry::{Point, Vector};
 use heapless::Vec;
+use nalgebra::Rotation3;
 
 /// Contacts solved for at once, at most; a rigid body needs no more than a handful.
 pub(crate) const MOST: usize = 12;
@@ -20,10 +24,46 @@ pub(crate) struct Contact {
     /// The touched point of the body against its centre of mass, in its own coordinates.
     pub(super) anchor: Vector,
     /// The gap less the anchor's place along the normal: what stays while the normal does.
-    pub(super) offset: f32,
+    offset: f32,
 }
 
 pub(crate) type Contacts = Vec<Contact, MOST>;
+
+/// A body that the patch's push would bring closer, by more than this cosine, is behind the patch: it touches another side of the
+/// supporter, not this one,
+const BEHIND: f32 = 0.3;
+/// unless it is less than so many voxels away: then it is a sheet without an inside, whose gap is positive on either side, that has
+/// begun to pass through.
+const SHEET: f32 = 0.5;
+
+impl Contact {
+    /// Of a patch with what is nearest to it, if they touch on that side.
+    pub(super) fn new(
+        (body, support): (&Body, &Support),
+        state: &State,
+        index: usize,
+        &Nearest { at, offset, gap, gradient }: &Nearest,
+    ) -> Option<Self> {
+        let gradient = state.rotation * gradient;
+        let normal = support.patches[index].push(-gradient, offset);
+        let is_behind = gap > 0.0 && normal.dot(&gradient) > BEHIND;
+        if is_behind && gap > SHEET * body.field.voxel_size() {
+            return None;
+        }
+        let gap = if is_behind { -gap } else { gap };
+        let anchor = at - body.centre;
+        let position = state.centre + state.rotation * anchor;
+        let offset = gap - position.coords.dot(&normal);
+        Some(Self { index: index as u32, position, normal, gap, anchor, offset })
+    }
+
+    /// Goes along with the body to `state`; `rotation` is that of the state.
+    pub(super) fn carry(&mut self, state: &State, rotation: &Rotation3<f32>) {
+        self.position = state.centre + rotation * self.anchor;
+        // The supporter stands still: the gap opens by what the touched point moved along the normal.
+        self.gap = self.offset + self.position.coords.dot(&self.normal);
+    }
+}
 
 /// Contacts closer to each other than this, metres, and with similar normals are one.
 const APART: f32 = 0.003;

@@ -3,7 +3,7 @@
 use super::body::State;
 use super::contact::{Contact, Contacts, keep};
 use super::odometer::Odometer;
-use super::touch::{Nearest, nearest_on_patch};
+use super::touch::nearest_on_patch;
 use super::{Body, Support};
 use crate::geometry::{Point, Vector};
 use crate::monitor::{Meter, Stop};
@@ -43,12 +43,6 @@ pub(crate) struct Neighbourhood<'s> {
 /// The pivot moves no farther than this, metres, before the odometer starts anew.
 const MOST_WAY: f32 = 0.006;
 
-/// A body that the patch's push would bring closer, by more than this cosine, is behind the patch: it touches another side of the
-/// supporter, not this one,
-const BEHIND: f32 = 0.3;
-/// unless it is less than so many voxels away: then it is a sheet without an inside, whose gap is positive on either side, that has
-/// begun to pass through.
-const SHEET: f32 = 0.5;
 /// Contacts are looked for again after they were carried along for so many steps,
 const CARRIES: u8 = 1;
 /// or when any point of the body may have moved farther than this, metres.
@@ -108,11 +102,7 @@ impl<'s> Neighbourhood<'s> {
         let whole = self.odometer.greatest_radius(body.reach);
         if self.carries > 0 && self.odometer.reading(whole) <= self.carried_until {
             self.carries -= 1;
-            for contact in contacts.iter_mut() {
-                contact.position = state.centre + rotation * contact.anchor;
-                // The supporter stands still: the gap opens by what the touched point moved along the normal.
-                contact.gap = contact.offset + contact.position.coords.dot(&contact.normal);
-            }
+            contacts.iter_mut().for_each(|contact| contact.carry(state, &rotation));
             return Ok(());
         }
         let horizon = f32::from(1 + CARRIES) * time_step;
@@ -151,7 +141,9 @@ impl<'s> Neighbourhood<'s> {
                     Err(way) => sleep.until = reading + way,
                     Ok(nearest) => {
                         queries += 1;
-                        if let Some(contact) = touch(scene, state, index, &nearest, margin) {
+                        if nearest.gap <= margin
+                            && let Some(contact) = Contact::new(scene, state, index, &nearest)
+                        {
                             keep(contacts, contact);
                         }
                     }
@@ -160,34 +152,4 @@ impl<'s> Neighbourhood<'s> {
         }
         meter.distance_queries(queries)
     }
-}
-
-/// The contact of a patch with what is nearest to it, unless the gap is more than `margin` metres.
-fn touch(
-    (body, support): (&Body, &Support),
-    state: &State,
-    index: usize,
-    &Nearest { at, offset, gap, gradient }: &Nearest,
-    margin: f32,
-) -> Option<Contact> {
-    if gap > margin {
-        return None;
-    }
-    let gradient = state.rotation * gradient;
-    let normal = support.patches[index].push(-gradient, offset);
-    let is_behind = gap > 0.0 && normal.dot(&gradient) > BEHIND;
-    if is_behind && gap > SHEET * body.field.voxel_size() {
-        return None;
-    }
-    let gap = if is_behind { -gap } else { gap };
-    let anchor = at - body.centre;
-    let position = state.centre + state.rotation * anchor;
-    Some(Contact {
-        index: index as u32,
-        position,
-        normal,
-        gap,
-        anchor,
-        offset: gap - position.coords.dot(&normal),
-    })
 }

@@ -48,6 +48,15 @@ pub(crate) struct Room<'a> {
 }
 
 impl<'a> Room<'a> {
+    /// Bytes for the patches of so many points.
+    pub(crate) const fn bytes(points: usize) -> usize {
+        array_bytes::<Patch>(points).saturating_add(array_bytes::<u32>(points)).saturating_add(array_bytes::<
+            Group,
+        >(
+            Support::most_groups(points),
+        ))
+    }
+
     /// For so many points.
     pub(crate) fn new(points: usize, arena: &mut Arena<'a>) -> Result<Self, OutOfMemory> {
         Ok(Self {
@@ -59,15 +68,6 @@ impl<'a> Room<'a> {
 }
 
 impl<'a> Support<'a> {
-    /// Bytes for the patches of so many points.
-    pub(crate) const fn bytes(points: usize) -> usize {
-        array_bytes::<Patch>(points).saturating_add(array_bytes::<u32>(points)).saturating_add(array_bytes::<
-            Group,
-        >(
-            Self::most_groups(points),
-        ))
-    }
-
     /// How many things may sleep where there are so many points.
     pub(crate) const fn sleepers(points: usize) -> usize {
         points + Self::most_groups(points)

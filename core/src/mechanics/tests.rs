@@ -42,7 +42,7 @@ impl Scene {
         let lasting = Surface::bytes(triangles)
             + DistanceField::bytes(VOXELS)
             + PointTree::bytes(count)
-            + Support::bytes(count);
+            + Room::bytes(count);
         let scratch = [
             MassProperties::scratch_bytes(mesh.vertices().len(), triangles),
             Surface::scratch_bytes(triangles),

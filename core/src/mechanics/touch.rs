@@ -74,8 +74,10 @@ struct Part {
 /// that keeps them from being told to be far off.
 const SMALL: f32 = 0.0021;
 const WIDE: f32 = 0.5;
-/// Parts that wait, at most: more than one for each cut of a patch as long as any.
-const WAITING: usize = 16;
+/// And no patch is cut into more than so many, however large: in a scene that was meant in millimetres they would be thousands.
+const MOST_PARTS: f32 = 64.0;
+/// Parts that wait, at most: one more than a patch is cut in two.
+const WAITING: usize = 8;
 
 /// The place where a patch touches is looked for in so many steps at most,
 const DESCENTS: usize = 4;
@@ -103,6 +105,7 @@ impl View<'_> {
     /// `margin` and the field is not exact there. If none is, says how far the body has to move until that may be.
     fn nearest_part(&self, margin: f32) -> Result<Nearest, f32> {
         let (field, [length, width]) = (self.body.field, self.patch.extents);
+        let small = SMALL.max(WIDE * width).max(length / MOST_PARTS);
         let (mut nearest, mut way) = (None::<Nearest>, f32::INFINITY);
         let mut waiting = Vec::<Part, WAITING>::new();
         let _ = waiting.push(Part { offset: 0.0, half: length });
@@ -115,7 +118,7 @@ impl View<'_> {
                 way = way.min(gap - margin);
                 continue;
             }
-            let is_small = half <= SMALL.max(WIDE * width);
+            let is_small = half <= small;
             match sample {
                 Ok(sample) if !self.patch.is_all_around() || is_small => {
                     let found = self.facing(offset, at, sample);

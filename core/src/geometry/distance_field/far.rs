@@ -3,8 +3,8 @@
 use super::brick::{BLOCK, STEP};
 use super::frame::Frame;
 use super::layout::Layout;
-use super::nearest::Nearest;
-use super::{Entry, MARGIN, MARGIN_PART};
+use super::nearest::{NONE, Nearest};
+use super::{Entry, understated};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 
 /// Fills in the distance of every block without a brick.
@@ -30,8 +30,6 @@ pub(super) const fn scratch_bytes(blocks: usize) -> usize {
 const CLOSE: f32 = 4.0;
 /// so often at most.
 const ROUNDS: usize = 8;
-/// In the place of a triangle that is not known.
-const NONE: u32 = u32::MAX;
 
 /// Square of the distance along one axis from the centre of a block to another block `steps` away, in blocks.
 fn gap_squared(steps: usize) -> f32 {
@@ -77,12 +75,8 @@ impl Far<'_> {
         {
             if let Entry::Far(_) = Entry::unpack(*entry) {
                 let to_brick = libm::sqrtf(squared) * BLOCK as f32;
-                let to_triangle = libm::sqrtf(to_triangle);
-                let distance = if to_triangle.is_finite() {
-                    to_brick.max(to_triangle - MARGIN - MARGIN_PART * to_triangle)
-                } else {
-                    to_brick
-                };
+                let to_triangle = understated(libm::sqrtf(to_triangle));
+                let distance = if to_triangle.is_finite() { to_brick.max(to_triangle) } else { to_brick };
                 *entry = Entry::Far(if sign == super::sign::INSIDE { -distance } else { distance }).pack();
             }
         }

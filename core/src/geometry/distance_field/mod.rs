@@ -275,7 +275,7 @@ impl<'m> DistanceField<'m> {
     fn in_metres(&self, value: f32) -> f32 {
         let value = value * QUANTUM;
         let size = value.abs();
-        let size = if size > BAND { (size - MARGIN - MARGIN_PART * size).max(BAND) } else { size };
+        let size = if size > BAND { understated(size).max(BAND) } else { size };
         size.copysign(value) * self.layout.voxel
     }
 
@@ -307,6 +307,12 @@ impl<'m> DistanceField<'m> {
         let slope = Vector::from([0, 1, 2].map(|axis| value(axis, 1) - value(axis, -1)));
         unit_or(slope, Vector::zeros())
     }
+}
+
+/// What is certain of a distance beyond the band, in voxels.
+#[inline]
+fn understated(distance: f32) -> f32 {
+    distance - MARGIN - MARGIN_PART * distance
 }
 
 /// Interpolates between the corners of a cell along its four edges in x.

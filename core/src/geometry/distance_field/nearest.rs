@@ -18,7 +18,7 @@ use core::ops::Range;
 /// Nodes are asked for by as many at once.
 const LANES: usize = 4;
 /// In the place of a triangle that is not known.
-const NONE: u32 = u32::MAX;
+pub(super) const NONE: u32 = u32::MAX;
 /// How often neighbours are asked again at most; 6 were found to be needed.
 const REPAIRS: usize = 16;
 /// The nodes of a brick closer than this know their nearest triangle before any other asks, in voxels. More than one: what
