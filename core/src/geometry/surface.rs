@@ -113,13 +113,18 @@ impl<'m> Surface<'m> {
 
     /// The point of the mesh that is closest to `point`.
     pub fn closest_point(&self, point: &Point) -> Point {
-        let mut closest = *point;
-        self.bvh.visit_near(point, f32::INFINITY, |items, mut limit| {
+        self.closest_point_within(point, f32::INFINITY).unwrap_or(*point)
+    }
+
+    /// The same if it is closer than `radius` metres: the closer that is to the distance, the faster.
+    pub(crate) fn closest_point_within(&self, point: &Point, radius: f32) -> Option<Point> {
+        let mut closest = None;
+        self.bvh.visit_near(point, radius * radius, |items, mut limit| {
             for corners in &self.triangles[items] {
                 let candidate = triangle::closest_point(corners, point);
                 let distance = (candidate - point).norm_squared();
                 if distance < limit {
-                    (closest, limit) = (candidate, distance);
+                    (closest, limit) = (Some(candidate), distance);
                 }
             }
             limit

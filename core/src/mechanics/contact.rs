@@ -1,7 +1,7 @@
 //! The contacts that a step is solved for.
 
 use super::body::State;
-use super::touch::Nearest;
+use super::touch::{Nearest, refine};
 use super::{Body, Support};
 use crate::geometry::{Point, Vector};
 use heapless::Vec;
@@ -21,6 +21,8 @@ pub(crate) struct Contact {
     pub(crate) normal: Vector,
     /// Distance between the surfaces, negative in penetration, metres.
     pub(crate) gap: f32,
+    /// Where on the patch, along and across it, metres.
+    on_patch: [f32; 2],
     /// The touched point of the body against its centre of mass, in its own coordinates.
     pub(super) anchor: Vector,
     /// The gap less the anchor's place along the normal: what stays while the normal does.
@@ -42,10 +44,10 @@ impl Contact {
         (body, support): (&Body, &Support),
         state: &State,
         index: usize,
-        &Nearest { at, offset, gap, gradient }: &Nearest,
+        &Nearest { at, offset: on_patch, gap, gradient }: &Nearest,
     ) -> Option<Self> {
         let gradient = state.rotation * gradient;
-        let normal = support.patches[index].push(-gradient, offset);
+        let normal = support.patches[index].push(-gradient, on_patch);
         let is_behind = gap > 0.0 && normal.dot(&gradient) > BEHIND;
         if is_behind && gap > SHEET * body.field.voxel_size() {
             return None;
@@ -54,7 +56,26 @@ impl Contact {
         let anchor = at - body.centre;
         let position = state.centre + state.rotation * anchor;
         let offset = gap - position.coords.dot(&normal);
-        Some(Self { index: index as u32, position, normal, gap, anchor, offset })
+        Some(Self { index: index as u32, position, normal, gap, on_patch, anchor, offset })
+    }
+
+    /// Asks the body's surface itself instead of its field; false if it turns out that they touch on another side.
+    pub(super) fn refine(
+        &mut self,
+        scene: (&Body, &Support),
+        state: &State,
+        rotation: &Rotation3<f32>,
+    ) -> bool {
+        let ((body, support), index) = (scene, self.index as usize);
+        let place = body.centre + rotation.inverse_transform_vector(&(support.place(index) - state.centre));
+        let gradient = -rotation.inverse_transform_vector(&self.normal);
+        let found = Nearest { at: body.centre + self.anchor, offset: self.on_patch, gap: self.gap, gradient };
+        let nearest = refine(body, &support.patches[index], rotation, &place, found);
+        let refined = Self::new(scene, state, index, &nearest);
+        if let Some(contact) = refined {
+            *self = contact;
+        }
+        refined.is_some()
     }
 
     /// Goes along with the body to `state`; `rotation` is that of the state.

@@ -27,7 +27,7 @@ impl Settings {
 
     /// Swings out as things do that rub and lose a little at each blow: found by what agrees with Bullet.
     pub(crate) fn swinging(friction: f32) -> Self {
-        Self { friction, drag: 0.3, spin_drag: 2.0 }
+        Self { friction, drag: 0.1, spin_drag: 1.5 }
     }
 
     /// Swings until friction stops it.

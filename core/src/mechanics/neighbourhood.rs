@@ -150,6 +150,8 @@ impl<'s> Neighbourhood<'s> {
                 }
             }
         }
+        queries += contacts.len();
+        contacts.retain_mut(|contact| contact.refine(scene, state, &rotation));
         meter.distance_queries(queries)
     }
 }

@@ -36,7 +36,7 @@ impl Patch {
     pub(super) const ALL_AROUND: u32 = 1 << 4;
 
     /// How much the normals turn where an offset leads along and across, 1/m.
-    fn curvatures_towards(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+    pub(super) fn curvatures_towards(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         [self.curvatures[usize::from(x < 0.0)], self.curvatures[2 + usize::from(y < 0.0)]]
     }
 
@@ -130,20 +130,30 @@ impl Patch {
     pub(crate) fn push(&self, push: Vector, offset: [f32; 2]) -> Vector {
         let across = self.across();
         let own = self.normal_at(offset);
-        let along = self.push_in_direction(0, offset[0], push.dot(&self.along), own[0]);
-        let sideways = self.push_in_direction(1, offset[1], push.dot(&across), own[1]);
+        let is_on_rim = self.is_on_rim(offset);
+        let seen = [push.dot(&self.along), push.dot(&across)];
+        let [along, sideways] =
+            [0, 1].map(|k| self.push_in_direction(k, offset[k], is_on_rim[k], seen[k], own[k]));
         let rest = 1.0 - along * along - sideways * sideways;
         unit_or(self.normal * libm::sqrtf(rest.max(0.0)) + self.along * along + across * sideways, push)
     }
 
+    /// Whether an offset is on the rim, along and across: of a flat patch, which is an ellipse, both or neither.
+    fn is_on_rim(&self, offset: [f32; 2]) -> [bool; 2] {
+        let [x, y] = [0, 1].map(|k| offset[k] / self.extents[k]);
+        if self.straight == 2 {
+            return [x * x + y * y > RIM * RIM; 2];
+        }
+        [x, y].map(|part| part.abs() > RIM)
+    }
+
     /// The component along or across of a push that is `push` by the body's surface and `own` by the patch.
-    fn push_in_direction(&self, direction: usize, offset: f32, push: f32, own: f32) -> f32 {
+    fn push_in_direction(&self, direction: usize, offset: f32, is_on_rim: bool, push: f32, own: f32) -> f32 {
         let extent = self.extents[direction];
         if extent <= Self::LEAST_EXTENT {
             return push;
         }
         let side = 2 * direction + usize::from(offset < 0.0);
-        let is_on_rim = offset.abs() > RIM * extent;
         let is_straight = (direction as u32) < self.straight;
         let is_over_end = self.ends & 1 << side != 0 && is_on_rim && (push - own) * offset > 0.0;
         if is_over_end {

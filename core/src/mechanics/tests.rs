@@ -295,6 +295,62 @@ fn what_sleeps_is_not_missed() {
 }
 
 #[test]
+fn contacts_are_on_the_surface_where_the_field_is_not() {
+    // A ball inside a pipe of 3 mm, whose voxels are not much finer: what is between its faces the field knows badly.
+    let (inner, outer, radius) = (0.09, 0.093, 0.006);
+    let points = (0..400).map(|i| {
+        let (z, around) = (1.0 - (i as f32 + 0.5) / 200.0, i as f32 * 2.399_963);
+        let (sin, cos) = around.sin_cos();
+        Vector::new(cos * (1.0 - z * z).sqrt(), sin * (1.0 - z * z).sqrt(), z)
+    });
+    let cloud = points.map(|p| (<[f32; 3]>::from(p * radius), <[f32; 3]>::from(p))).unzip();
+    Scene::new(test_shapes::tube(inner, outer, 0.1), cloud).try_out(|lab| {
+        assert!(lab.body.field.voxel_size() > 0.0015);
+        let scene = (&lab.body, &lab.support);
+        let (monitor, mut random) = (Monitor::new(), Random::new(5));
+        let mut meter = Meter::new(&monitor);
+        let (mut count, mut worst_of_field) = (0, 0.0_f32);
+        for _ in 0..200 {
+            let mut draw = |low: f32, high: f32| low + (high - low) * random.next_f32();
+            let (sin, cos) = draw(0.0, core::f32::consts::TAU).sin_cos();
+            let off_axis = inner - radius - draw(0.0, 0.0003);
+            let shift = Vector::new(cos * off_axis, sin * off_axis, draw(-0.04, 0.04));
+            let turn = UnitQuaternion::from_axis_angle(&Vector::z_axis(), draw(0.0, 6.0));
+            let state = lab.body.at(&Pose::from_parts(Translation3::from(shift), turn));
+            let mut contacts = Contacts::new();
+            let mut neighbourhood = Neighbourhood::new(&mut lab.sleeps);
+            neighbourhood.update(&mut contacts, scene, &state, (0.0005, 0.0), &mut meter).unwrap();
+            for contact in &contacts {
+                let at = lab.body.centre + contact.anchor;
+                let exact = lab.body.surface.signed_distance(&at);
+                assert!((contact.gap.abs() - exact.abs()).abs() < 5e-5, "{} {exact}", contact.gap);
+                count += 1;
+                worst_of_field = worst_of_field.max((lab.body.field.distance(&at) - exact).abs());
+            }
+        }
+        assert!(count > 200 && worst_of_field > 2e-4, "{count} {worst_of_field}");
+    });
+}
+
+#[test]
+fn the_corner_of_a_plate_pushes_as_what_lies_on_it_leans() {
+    // What leans over the corner of a flat patch that ends ahead and to the left is not held by the plane that the patch is.
+    let patch = Patch {
+        normal: Vector::z(),
+        along: Vector::x(),
+        extents: [0.002, 0.002],
+        curvatures: [0.0; 4],
+        straight: 2,
+        ends: 1 | 1 << 2,
+    };
+    let lean = Vector::new(0.3, 0.3, 0.9).normalize();
+    assert!((patch.push(lean, [0.0014, 0.0014]) - lean).norm() < 1e-3);
+    // In the middle of it, and where the surface goes on, it is.
+    assert!((patch.push(lean, [0.0, 0.0]) - Vector::z()).norm() < 1e-6);
+    assert!((patch.push(lean, [-0.0014, -0.0014]) - Vector::z()).norm() < 1e-6);
+}
+
+#[test]
 fn a_bar_with_a_round_end_is_known_from_few_points() {
     // Radius 4 mm along x from -60 mm to where it ends in half a ball, seen at points 3 mm apart. A ball has as much surface for each
     // millimetre of height as the cylinder around it (Archimedes), and the golden angle spreads the points around.

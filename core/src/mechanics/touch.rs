@@ -41,8 +41,7 @@ pub(super) fn nearest_on_patch(
     {
         return Err(bound - patch.reach() - margin);
     }
-    let [along, across, normal] = patch.axes().map(|axis| rotation.inverse_transform_vector(&axis));
-    let view = View { body, patch, at: *at, along, across, normal };
+    let view = View::new(body, patch, rotation, at);
     let start = match sample {
         Ok((gap, gradient)) if !patch.is_all_around() => Nearest { at: *at, offset: [0.0; 2], gap, gradient },
         // The field is exact close to the body only, and a long patch may pass it far from its point.
@@ -53,12 +52,62 @@ pub(super) fn nearest_on_patch(
     }
     // The rim of a patch comes closer than its point, by about this.
     let [a, b] = patch.extents;
-    let fall = start.gradient.dot(&along).abs() * a + start.gradient.dot(&across).abs() * b;
+    let fall = start.gradient.dot(&view.along).abs() * a + start.gradient.dot(&view.across).abs() * b;
     if start.gap - fall > margin {
         // That is an estimate: it is looked at again when half of it is used up.
         return Err((start.gap - patch.reach() - margin).max(0.5 * (start.gap - fall - margin)));
     }
     Ok(view.descend(start))
+}
+
+/// The surface itself is asked from so far off it, metres: there it is certain on which side that is, and an edge has a direction.
+const OFF: f32 = 0.0002;
+/// What is deeper in the body by the field than this, in voxels, which is what it may be off by, is in there for certain: it knows the way
+/// out.
+const DEEP: f32 = 0.5;
+/// Unless the patch and the body face each other, by this cosine, it is asked from where the body faces.
+const FACING: f32 = 0.5;
+/// What is seen there from farther aside than this cosine is on the other side of the surface.
+const ASIDE: f32 = 0.3;
+/// The place is corrected so often at most, as long as that leads farther than `CLOSE`, metres.
+const CORRECTIONS: usize = 3;
+const CLOSE: f32 = 1e-5;
+/// Patches that are flatter are taken to be bent like this, 1/m: what leads uphill is too far.
+const FLATTEST: f32 = 50.0;
+
+/// A place that was found with the field, by the body's surface itself: in thin walls and at edges the field may be off by half a voxel,
+/// and its gradient by ten degrees, which is the difference between what holds by friction and what slides. `at` is the patch's point, as
+/// for [`nearest_on_patch`].
+pub(super) fn refine(
+    body: &Body,
+    patch: &Patch,
+    rotation: &Rotation3<f32>,
+    at: &Point,
+    found: Nearest,
+) -> Nearest {
+    // A wire is asked for from its axis, where the field errs less.
+    if found.gap < -DEEP * body.field.voxel_size() || patch.is_all_around() {
+        return found;
+    }
+    let view = View::new(body, patch, rotation, at);
+    let Some(mut nearest) = view.look_closely(&found, found.offset, body.field.voxel_size()) else {
+        return found;
+    };
+    for _ in 0..CORRECTIONS {
+        let [x, y] = nearest.offset;
+        let (slope, curvatures) = (view.slope(&nearest), patch.curvatures_towards([x, y]));
+        let [a, b] = curvatures.map(|curvature| 1.0 / curvature.max(FLATTEST));
+        let offset = patch.clamp([x - slope[0] * a, y - slope[1] * b]);
+        let way = (offset[0] - x).abs() + (offset[1] - y).abs();
+        if way < CLOSE {
+            break;
+        }
+        match view.look_closely(&nearest, offset, way + OFF) {
+            Some(next) if next.gap < nearest.gap => nearest = next,
+            _ => break,
+        }
+    }
+    nearest
 }
 
 /// A part of a patch.
@@ -88,7 +137,12 @@ const LONGEST_STRIDE: f32 = 4.0;
 /// What leads uphill was too far by this.
 const SHORTER: f32 = 0.3;
 
-impl View<'_> {
+impl<'a> View<'a> {
+    fn new(body: &'a Body<'a>, patch: &'a Patch, rotation: &Rotation3<f32>, at: &Point) -> Self {
+        let [along, across, normal] = patch.axes().map(|axis| rotation.inverse_transform_vector(&axis));
+        Self { body, patch, at: *at, along, across, normal }
+    }
+
     /// The place at an offset along and across; on the axis of a wire.
     fn place(&self, offset: [f32; 2]) -> Point {
         self.at + self.along * offset[0] + self.across * offset[1] - self.normal * self.patch.depth(offset)
@@ -99,6 +153,22 @@ impl View<'_> {
         let at = self.place(offset);
         let (gap, gradient) = self.body.field.sample(&at);
         Nearest { at, offset, gap, gradient }
+    }
+
+    /// What is there by the body's surface, if its gap is not greater by more than `more` metres than at `near`, a place close by.
+    fn look_closely(&self, near: &Nearest, offset: [f32; 2], more: f32) -> Option<Nearest> {
+        let at = self.place(offset);
+        let [x, y, z] = self.patch.normal_at(offset);
+        let own = self.along * x + self.across * y + self.normal * z;
+        let out = if own.dot(&near.gradient) < -FACING { -own } else { near.gradient };
+        let from = at + out * OFF;
+        let closest = self.body.surface.closest_point_within(&from, near.gap.max(0.0) + OFF + more)?;
+        let (way, length) = (from - closest, (from - closest).norm());
+        if out.dot(&way) <= ASIDE * length {
+            return None;
+        }
+        let gradient = way / length;
+        Some(Nearest { at, offset, gap: (at - closest).dot(&gradient), gradient })
     }
 
     /// Looks for the part of the patch that is nearest to the body by cutting the patch in two as long as a part may be closer than

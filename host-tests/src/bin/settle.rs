@@ -1,4 +1,4 @@
-//! Lets random candidate poses go in the core and in Bullet and says how often both agree on what rests.
+//! Lets random candidate poses go in the core, in Bullet and in ODE and says how often they agree on what rests.
 
 use anyhow::Result;
 use clap::Parser;
@@ -7,7 +7,7 @@ use hangpose::hanging::{HangingPose, let_go, predict_bytes};
 use hangpose::mechanics::Fate;
 use hangpose::memory::Limits;
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses, sample_supporter};
-use host_tests::judge::{Bullet, Judge, Scene};
+use host_tests::judge::{Bullet, Judge, Ode, Scene};
 use host_tests::shapes::Random;
 use host_tests::tables::case::{Case, Fit, made};
 use host_tests::tables::report::wilson;
@@ -28,8 +28,18 @@ struct Arguments {
     seed: u64,
 }
 
-/// What both say of a pose: whether it rests in the core and in Bullet, and whether it hangs and still swings there.
-type Said = [bool; 3];
+/// What is said of a pose.
+#[derive(Clone, Copy)]
+struct Said {
+    /// Whether it rests in the core,
+    core: bool,
+    /// in Bullet
+    bullet: bool,
+    /// and in ODE.
+    ode: bool,
+    /// Whether it hangs in Bullet, but still swings.
+    swings: bool,
+}
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
@@ -48,18 +58,26 @@ fn main() -> Result<()> {
     });
     let said = said.into_inner()?;
     let count = |holds: &dyn Fn(&Said) -> bool| said.iter().filter(|said| holds(said)).count();
+    let share = |title: &str, agree: &dyn Fn(&Said) -> bool| {
+        println!("{title}, %: {}", wilson(count(agree), said.len()));
+    };
     println!("{} poses of {} pairs", said.len(), cases.len());
-    println!("agree, %: {}", wilson(count(&|[ours, bullet, _]| ours == bullet), said.len()));
-    println!("both rest {}, both fall {}", count(&|s| s[0] && s[1]), count(&|s| !s[0] && !s[1]));
+    share("the core and Bullet agree", &|s| s.core == s.bullet);
+    println!("both rest {}, both fall {}", count(&|s| s.core && s.bullet), count(&|s| !s.core && !s.bullet));
     println!(
         "rests in the core only {}, of these still swinging in Bullet {}",
-        count(&|s| s[0] && !s[1]),
-        count(&|s| s[0] && s[2])
+        count(&|s| s.core && !s.bullet),
+        count(&|s| s.core && s.swings)
     );
-    println!("rests in Bullet only {}", count(&|s| !s[0] && s[1]));
+    println!("rests in Bullet only {}", count(&|s| !s.core && s.bullet));
+    share("the core and Bullet agree on whether it hangs, swinging or not", &|s| {
+        s.core == (s.bullet || s.swings)
+    });
+    share("ODE and Bullet agree", &|s| s.ode == s.bullet);
+    share("the core and ODE agree", &|s| s.core == s.ode);
     println!(
-        "agree on whether it hangs, swinging or not, %: {}",
-        wilson(count(&|[ours, bullet, swings]| *ours == (*bullet || *swings)), said.len())
+        "where ODE and Bullet agree the core agrees with them, %: {}",
+        wilson(count(&|s| s.ode == s.bullet && s.core == s.ode), count(&|s| s.ode == s.bullet))
     );
     Ok(())
 }
@@ -87,12 +105,19 @@ fn judge(case: &Case, count: usize) -> Vec<Said> {
     chosen
         .filter_map(|pose| {
             let verdict = Bullet::default().judge(&scene, &pose);
-            let ours = let_go(&object, &supporter, &pose, &params, &mut memory, &monitor);
-            let ours = ours.expect("params are valid").expect("nothing stops it").fate == Fate::Rests;
-            let figures = &verdict.figures;
-            let swings = !verdict.holds && figures.touches && figures.fell_after.is_none();
             // What runs through the supporter is no candidate.
-            verdict.clear.then_some([ours, verdict.holds, swings])
+            if !verdict.clear {
+                return None;
+            }
+            let ours = let_go(&object, &supporter, &pose, &params, &mut memory, &monitor);
+            let ours = ours.expect("params are valid").expect("nothing stops it");
+            let figures = &verdict.figures;
+            Some(Said {
+                core: ours.fate == Fate::Rests,
+                bullet: verdict.holds,
+                ode: Ode::default().judge(&scene, &pose).holds,
+                swings: !verdict.holds && figures.touches && figures.fell_after.is_none(),
+            })
         })
         .collect()
 }

@@ -3,6 +3,7 @@
 use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
 use hangpose::{Candidates, Params};
+use host_tests::shapes::OBJECTS;
 use host_tests::tables::run::{Engine, Options, run};
 use host_tests::tables::{case, real, report};
 use indicatif::ProgressBar;
@@ -21,6 +22,9 @@ struct Arguments {
     /// Seed of the sizes.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Only pairs with this kind of object, such as "cap", out of all that are made: what a hundred pairs say of one kind.
+    #[arg(long, value_name = "KIND", value_parser = object_kind)]
+    only: Option<String>,
     /// Who judges. With both, the tables are Bullet's, and ODE is asked about the best pose of
     /// made pairs.
     #[arg(long, value_enum, default_value_t = Engine::Both)]
@@ -85,6 +89,15 @@ impl Profile {
     }
 }
 
+/// A name of a kind of object, as the tables have it.
+fn object_kind(name: &str) -> Result<String, String> {
+    let names = || OBJECTS.iter().map(|kind| kind.name);
+    if names().any(|known| known == name) {
+        return Ok(name.into());
+    }
+    Err(format!("there is no such kind of object; there are {}", names().collect::<Vec<_>>().join(", ")))
+}
+
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
     let folders = [&arguments.out, &arguments.json].map(|file| file.parent());
@@ -102,7 +115,8 @@ fn main() -> Result<()> {
             (name, profile.params())
         })
         .collect();
-    let work = |cases: &[case::Case], engine| {
+    let work = |mut cases: Vec<case::Case>, engine| {
+        cases.retain(|case| arguments.only.as_ref().is_none_or(|kind| case.object_kind == *kind));
         let options = Options {
             profiles: &profiles,
             engine,
@@ -112,18 +126,18 @@ fn main() -> Result<()> {
             gallery: arguments.gallery.as_deref(),
         };
         let bar = ProgressBar::new(0);
-        run(cases, &options, |done, all| {
+        run(&cases, &options, |done, all| {
             bar.set_length(all as u64);
             bar.set_position(done as u64);
         })
     };
-    let made = work(&case::made(arguments.pairs, arguments.seed), arguments.engine)?;
-    let several = work(&case::several(arguments.pairs / 15, arguments.seed), arguments.engine)?;
+    let made = work(case::made(arguments.pairs, arguments.seed), arguments.engine)?;
+    let several = work(case::several(arguments.pairs / 15, arguments.seed), arguments.engine)?;
     let real = match &arguments.meshes {
         // ODE takes minutes for a scan's thousands of triangles against those of another.
         Some(folder) => {
             let engine = if arguments.engine == Engine::Both { Engine::Bullet } else { arguments.engine };
-            work(&real::real(folder, arguments.real_pairs)?, engine)?
+            work(real::real(folder, arguments.real_pairs)?, engine)?
         }
         None => Vec::new(),
     };
