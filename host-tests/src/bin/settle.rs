@@ -58,11 +58,12 @@ fn main() -> Result<()> {
     });
     let said = said.into_inner()?;
     let count = |holds: &dyn Fn(&Said) -> bool| said.iter().filter(|said| holds(said)).count();
-    let share = |title: &str, agree: &dyn Fn(&Said) -> bool| {
-        println!("{title}, %: {}", wilson(count(agree), said.len()));
+    let share = |title: &str, agree: &dyn Fn(&Said) -> bool, of: usize| {
+        println!("{title}: {} of {of}, {} %", count(agree), wilson(count(agree), of));
     };
     println!("{} poses of {} pairs", said.len(), cases.len());
-    share("the core and Bullet agree", &|s| s.core == s.bullet);
+    let all = said.len();
+    share("the core and Bullet agree", &|s| s.core == s.bullet, all);
     println!("both rest {}, both fall {}", count(&|s| s.core && s.bullet), count(&|s| !s.core && !s.bullet));
     println!(
         "rests in the core only {}, of these still swinging in Bullet {}",
@@ -70,14 +71,15 @@ fn main() -> Result<()> {
         count(&|s| s.core && s.swings)
     );
     println!("rests in Bullet only {}", count(&|s| !s.core && s.bullet));
-    share("the core and Bullet agree on whether it hangs, swinging or not", &|s| {
-        s.core == (s.bullet || s.swings)
-    });
-    share("ODE and Bullet agree", &|s| s.ode == s.bullet);
-    share("the core and ODE agree", &|s| s.core == s.ode);
-    println!(
-        "where ODE and Bullet agree the core agrees with them, %: {}",
-        wilson(count(&|s| s.ode == s.bullet && s.core == s.ode), count(&|s| s.ode == s.bullet))
+    let hangs = |s: &Said| s.core == (s.bullet || s.swings);
+    share("the core and Bullet agree on whether it hangs, swinging or not", &hangs, all);
+    share("ODE and Bullet agree", &|s| s.ode == s.bullet, all);
+    share("the core and ODE agree", &|s| s.core == s.ode, all);
+    let engines_agree = count(&|s| s.ode == s.bullet);
+    share(
+        "the core agrees with both, where they agree",
+        &|s| s.ode == s.bullet && s.core == s.ode,
+        engines_agree,
     );
     Ok(())
 }
