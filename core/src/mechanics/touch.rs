@@ -72,7 +72,7 @@ const ASIDE: f32 = 0.3;
 /// The place is corrected so often at most, as long as that leads farther than `CLOSE`, metres.
 const CORRECTIONS: usize = 3;
 const CLOSE: f32 = 1e-5;
-/// Patches that are flatter are taken to be bent like this, 1/m: what leads uphill is too far.
+/// Patches that are flatter are taken to be bent like this, 1/m: on a flat one it is endlessly far to where there is no slope.
 const FLATTEST: f32 = 50.0;
 
 /// A place that was found with the field, by the body's surface itself: in thin walls and at edges the field may be off by half a voxel,
