@@ -1,6 +1,6 @@
 //! Distances to one triangle, prepared for many points.
 
-use super::super::Vector;
+use crate::geometry::Vector;
 use bytemuck::{Pod, Zeroable};
 
 /// A triangle in a frame of its own: the first corner at the origin, the second on the x axis, all in the x-y plane.
@@ -21,7 +21,7 @@ impl Frame {
     /// The frame of a triangle that has an area.
     pub(super) fn of(&[a, b, c]: &[Vector; 3]) -> Self {
         let (ab, ac) = (b - a, c - a);
-        let unit = |v: Vector| super::super::unit_or(v, Vector::zeros());
+        let unit = |v: Vector| crate::geometry::unit_or(v, Vector::zeros());
         let x = unit(ab);
         // What is left of the third corner across the first edge; the difference loses nothing that the corner has.
         let z = unit(x.cross(&ac));
@@ -94,7 +94,8 @@ fn dot(a: &[f32; 3], b: &[f32; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Point, triangle};
+    use crate::geometry::Point;
+    use crate::geometry::shapes::triangle;
     use crate::random::Random;
 
     #[test]

@@ -1,8 +1,8 @@
 //! How fine the voxels are and which blocks hold bricks.
 
-use super::super::{Aabb, Point, Surface, Vector};
 use super::brick::{BLOCK, BRICK_NODES};
 use super::{BAND, Entry, raster};
+use crate::geometry::{Aabb, Point, Surface, Vector};
 use crate::memory::larger;
 use core::hint::black_box;
 
@@ -75,7 +75,8 @@ impl Layout {
         let finest =
             (largest / FINEST).max(FINEST_METRES.min(largest / FEWEST)).max(farthest / FINEST_COORDINATE);
         // A plane at a random angle meets 3/2 blocks for each that would tile it, and the band adds to that.
-        let area: f32 = surface.triangles().iter().map(|t| super::super::scaled_normal(t).norm() * 0.5).sum();
+        let area: f32 =
+            surface.triangles().iter().map(|t| crate::geometry::scaled_normal(t).norm() * 0.5).sum();
         let side = BLOCK as f32;
         let an_area = (1.5 + 2.0 * REACH / side) / (side * side);
         let mut voxel = libm::sqrtf(area * an_area / max_bricks as f32).max(finest);

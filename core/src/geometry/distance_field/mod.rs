@@ -18,7 +18,7 @@ mod sign;
 #[cfg(test)]
 mod tests;
 
-use super::{Aabb, Point, Surface, Vector, unit_or};
+use crate::geometry::{Aabb, Point, Surface, Vector, unit_or};
 use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
 use brick::{BLOCK, BRICK_NODES};
 use core::hint::black_box;

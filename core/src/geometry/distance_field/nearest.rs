@@ -4,7 +4,6 @@
 //! spread to their neighbours, a layer at a time: a node asks the triangles that its neighbours found nearest. That may
 //! miss the nearest of many small triangles, by less than one of them.
 
-use super::super::{Surface, Vector};
 use super::brick::{
     ACROSS, ALL, BESIDE, BLOCK, BRICK_NODES, COORDINATES, DIAGONAL, HIGH, LOW, Nodes, PADDED, SIDE, STEP,
     compare, dilate, each,
@@ -12,6 +11,7 @@ use super::brick::{
 use super::frame::Frame;
 use super::layout::Layout;
 use super::{Entry, raster};
+use crate::geometry::{Surface, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use core::ops::Range;
 

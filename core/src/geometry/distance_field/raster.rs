@@ -1,7 +1,7 @@
 //! Which blocks a triangle, thickened, passes through.
 
-use super::super::Vector;
 use super::brick::BLOCK;
+use crate::geometry::Vector;
 
 /// Half the edge of a block, in voxels.
 const HALF: f32 = BLOCK as f32 / 2.0;

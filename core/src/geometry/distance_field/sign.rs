@@ -5,7 +5,6 @@
 //! Around an open mesh the side also changes where there is no mesh, and every brick asks for itself. What is left are
 //! nodes very close to the mesh, that the plane of the nearest triangle decides for, or their own winding number.
 
-use super::super::{Point, Surface, Vector};
 use super::brick::{
     ACROSS, ALL, BESIDE, BLOCK, BRICK_NODES, DIAGONAL, HIGH, LOW, Nodes, STEP, compare, coordinates, each,
 };
@@ -13,6 +12,7 @@ use super::frame::Frame;
 use super::layout::Layout;
 use super::nearest::Nearest;
 use super::{Entry, QUANTUM};
+use crate::geometry::{Point, Surface, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 
 /// Sides; a block's is `UNKNOWN` at first.

@@ -1,7 +1,7 @@
 //! Neighbours among points.
 
 use super::bvh::{Bvh, Node};
-use super::{Aabb, Point};
+use crate::geometry::{Aabb, Point};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 
 /// Points arranged for neighbour queries. Queries name points by their position in [`points`](Self::points),

@@ -1,6 +1,6 @@
 //! Queries on one triangle.
 
-use super::{Point, Vector};
+use crate::geometry::{Point, Vector};
 
 /// Whether a triangle has an area that `f32` can tell from zero.
 pub(crate) fn has_area([a, b, c]: &[Point; 3]) -> bool {

@@ -1,6 +1,6 @@
 //! Eigenvectors of a symmetric 3x3 matrix.
 
-use super::Vector;
+use crate::geometry::Vector;
 use nalgebra::Matrix3;
 
 /// Cyclic Jacobi converges quadratically; six sweeps are past `f32`'s precision for any 3x3 matrix.

@@ -1,6 +1,7 @@
 //! Area, volume and centroids of a mesh.
 
-use super::{Mesh, Point, triangle};
+use super::{Mesh, triangle};
+use crate::geometry::Point;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use nalgebra::Matrix3;
 

@@ -1,6 +1,6 @@
 //! Convex hulls, asked without being built.
 
-use super::{Point, Vector};
+use crate::geometry::{Point, Vector};
 
 /// Half the side of the square that every point is thickened by across the ray, of the extent. It makes flat and
 /// collinear sets solid, and is some hundred times what rounding does to a coordinate.

@@ -1,6 +1,6 @@
 //! Clustering by single linkage.
 
-use super::Point;
+use crate::geometry::Point;
 
 /// Single linkage, for the one cluster that holds `points[0]`: moves its members to the front and returns how
 /// many they are. Two points closer than `link` metres are in the same cluster.

@@ -1,6 +1,7 @@
 //! Triangle meshes as the caller holds them, checked at the border.
 
-use super::{Aabb, MAX_COORDINATE, Point};
+use super::Aabb;
+use crate::geometry::{MAX_COORDINATE, Point};
 
 /// A checked view of a triangle mesh: corners counter-clockwise seen from outside, in metres.
 ///

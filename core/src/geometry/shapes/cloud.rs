@@ -1,7 +1,7 @@
 //! Point clouds as the caller holds them, checked at the border.
 
 use super::mesh::{MAX_COUNT, is_usable};
-use super::{MAX_COORDINATE, Point};
+use crate::geometry::{MAX_COORDINATE, Point};
 
 /// A checked view of a point cloud, in metres. Nothing is copied.
 #[derive(Clone, Copy, Debug)]

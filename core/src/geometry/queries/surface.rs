@@ -1,7 +1,9 @@
 //! A mesh arranged for queries: rays, closest points, inside and outside.
 
 use super::bvh::{Bvh, Node};
-use super::{Aabb, Mesh, Point, Vector, ray::Ray, triangle};
+use super::ray::Ray;
+use crate::geometry::shapes::triangle;
+use crate::geometry::{Aabb, Mesh, Point, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use bytemuck::{Pod, Zeroable};
 

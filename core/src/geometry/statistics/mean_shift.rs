@@ -1,6 +1,6 @@
 //! Clustering by mean shift.
 
-use super::{Point, PointTree, Vector};
+use crate::geometry::{Point, PointTree, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use bytemuck::{Pod, Zeroable};
 

@@ -1,6 +1,6 @@
 //! Axis-aligned bounding boxes.
 
-use super::{Point, Vector};
+use crate::geometry::{Point, Vector};
 
 /// An axis-aligned box, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,8 @@
 //!
 //! Knows only boxes; what an item is, and how far or where it is hit, comes from the caller as a closure.
 
-use super::{Aabb, Point, ray::Ray};
+use super::ray::Ray;
+use crate::geometry::{Aabb, Point};
 use bytemuck::{Pod, Zeroable};
 
 /// A box with either two children or a run of items.

@@ -1,6 +1,6 @@
 //! Rays that do not slip between triangles.
 
-use super::{Aabb, Point, Vector};
+use crate::geometry::{Aabb, Point, Vector};
 
 /// A ray, prepared to be tested against many boxes and triangles (Woop, Benthin and Wald 2013, "Watertight
 /// Ray/Triangle Intersection").

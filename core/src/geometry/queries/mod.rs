@@ -1,0 +1,10 @@
+//! Rays, closest points, winding numbers, neighbours and hull exits, with trees in the caller's memory.
+
+mod bvh;
+pub mod hull;
+mod point_tree;
+mod ray;
+mod surface;
+
+pub use point_tree::{Neighbour, PointTree};
+pub use surface::Surface;

@@ -1,0 +1,13 @@
+//! Meshes and point clouds, and what follows from their coordinates alone.
+
+mod aabb;
+mod cloud;
+mod mass;
+mod mesh;
+pub(super) mod triangle;
+
+pub use aabb::Aabb;
+pub use cloud::{Cloud, CloudError};
+pub use mass::MassProperties;
+pub use mesh::{MAX_COUNT, Mesh, MeshError};
+pub(crate) use triangle::scaled_normal;

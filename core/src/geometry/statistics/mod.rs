@@ -1,0 +1,8 @@
+//! Clusters and principal directions of points.
+
+mod eigen;
+mod linkage;
+pub(crate) mod mean_shift;
+
+pub(crate) use eigen::least_eigenvector;
+pub(crate) use linkage::linked_cluster;

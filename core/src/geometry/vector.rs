@@ -1,0 +1,30 @@
+//! Points, vectors and poses, and the vector functions that nalgebra leaves out.
+
+/// A position, in metres.
+pub type Point = nalgebra::Point3<f32>;
+/// A direction or a displacement, in metres.
+pub type Vector = nalgebra::Vector3<f32>;
+/// A rigid motion: rotation, then translation in metres.
+pub type Pose = nalgebra::Isometry3<f32>;
+
+/// The largest absolute coordinate, in metres, that a mesh or a cloud may have. Above it, the spacing of `f32` exceeds the
+/// details of hand-held objects, and squared distances may overflow.
+pub const MAX_COORDINATE: f32 = 1e6;
+
+/// `vector` scaled to unit length, or `otherwise` if its length is zero.
+pub(crate) fn unit_or(vector: Vector, otherwise: Vector) -> Vector {
+    let length = vector.norm();
+    if length > 0.0 { vector / length } else { otherwise }
+}
+
+/// A unit vector perpendicular to the unit vector `v`. The choice is a fixed rule, so that runs repeat.
+pub(crate) fn any_perpendicular(v: Vector) -> Vector {
+    let axis = if v.x.abs() < 0.9 { Vector::x() } else { Vector::y() };
+    v.cross(&axis).normalize()
+}
+
+/// `v` rotated by `angle` radians about the unit vector `axis`, to which it is perpendicular.
+pub(crate) fn rotate_about(axis: Vector, angle: f32, v: Vector) -> Vector {
+    let (sin, cos) = libm::sincosf(angle);
+    v * cos + axis.cross(&v) * sin
+}
