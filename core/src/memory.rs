@@ -42,8 +42,13 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Nothing of anything, to name only what matters: `Limits { points, ..Limits::NONE }`.
+    /// Zero of everything, for naming only the limits that matter: `Limits { voxels, ..Limits::NONE }`.
     pub const NONE: Self = Self { vertices: 0, triangles: 0, samples: 0, voxels: 0, points: 0 };
+
+    /// For a supporter of `points` points, and no object.
+    pub const fn of_points(points: usize) -> Self {
+        Self { points, ..Self::NONE }
+    }
 }
 
 /// Bytes that an [`Arena`] spends on `count` values of `T`.

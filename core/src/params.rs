@@ -181,7 +181,7 @@ impl Params {
             }
         }
         // Without its distances nothing can be let go, and contacts are only worth that.
-        if self.voxels == 0 && (self.settle || self.candidates == Candidates::Contacts) {
+        if self.voxels == 0 && self.uses_mechanics() {
             return Err(ParamsError::OutOfRange {
                 name: "voxels",
                 value: 0.0,
@@ -199,6 +199,11 @@ impl Params {
             return Err(ParamsError::CentreOfMass { point });
         }
         Ok(())
+    }
+
+    /// Whether a prediction needs the object's distance field and the supporter's patches.
+    pub(crate) fn uses_mechanics(&self) -> bool {
+        self.settle || self.candidates == Candidates::Contacts
     }
 
     /// The unit vector against gravity, in supporter coordinates.

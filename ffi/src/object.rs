@@ -9,7 +9,8 @@ use crate::params::hangpose_params;
 use crate::status::*;
 use core::ffi::c_void;
 use hangpose_core::Monitor;
-use hangpose_core::hanging::Object;
+use hangpose_core::hanging::sites::ObjectCounts;
+use hangpose_core::hanging::{Object, ObjectPlaces};
 use hangpose_core::memory::Limits;
 
 /// An object, analysed once, at the front of the memory that it was made in. There is nothing to free; the memory must
@@ -66,7 +67,7 @@ pub unsafe extern "C" fn hangpose_object_create(
             triangles: mesh.triangle_count as usize,
             samples: params.samples,
             voxels: params.voxels,
-            points: 0,
+            ..Limits::NONE
         };
         let none = Monitor::new();
         let analyze = |arena: &'static mut [u8]| -> Result<_, Failure> {
@@ -133,7 +134,11 @@ pub unsafe extern "C" fn hangpose_object_get_info(
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
     let read = |object: &Object| {
-        let (mass, counts, work) = (object.mass(), object.counts(), object.work());
+        let (mass, work) = (object.mass(), object.work());
+        let (contact_points, counts) = match *object.places() {
+            ObjectPlaces::Sites { counts, .. } => (counts.contact_points, counts),
+            ObjectPlaces::Contacts { counts, .. } => (counts.contact_points, ObjectCounts::default()),
+        };
         Ok(hangpose_object_info {
             struct_size: size_of::<hangpose_object_info>() as u32,
             stopped: stopped(object.stopped()),
@@ -142,7 +147,7 @@ pub unsafe extern "C" fn hangpose_object_get_info(
             area: mass.area,
             volume: mass.volume.unwrap_or(f32::NAN),
             centre_of_mass: object.centre_of_mass().into(),
-            contact_points: counts.contact_points as u32,
+            contact_points: contact_points as u32,
             clusters: counts.clusters as u32,
             with_free_space: counts.with_free_space as u32,
             encircled: counts.encircled as u32,

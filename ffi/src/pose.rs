@@ -1,5 +1,6 @@
 use crate::detail::HANGPOSE_NO_INDEX;
-use hangpose_core::hanging::{Cost, HangingPose, SiteMatch};
+use hangpose_core::hanging::HangingPose;
+use hangpose_core::hanging::sites::{Cost, SiteMatch};
 use hangpose_core::mechanics::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
 
 /// Directions in which gravity is tilted.

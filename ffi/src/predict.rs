@@ -11,10 +11,9 @@ use crate::status::*;
 use crate::supporter::{SupporterHandle, hangpose_supporter};
 use core::ffi::c_void;
 use hangpose_core::Monitor;
-use hangpose_core::hanging::{
-    HangingPose, MatchingCounts, Prediction, SettlingCounts, predict, predict_bytes,
-};
-use hangpose_core::memory::Limits;
+use hangpose_core::hanging::contacts::CandidateCounts;
+use hangpose_core::hanging::sites::MatchingCounts;
+use hangpose_core::hanging::{HangingPose, Prediction, SearchCounts, SettlingCounts, predict, predict_bytes};
 
 /// What hangpose_predict found beside the poses: what was left after each step of the method, and what it took.
 #[repr(C)]
@@ -128,9 +127,7 @@ pub unsafe extern "C" fn hangpose_predict(
         };
         check("poses", poses.cast_const())?;
         let (object, supporter) = (object.model(), supporter.model());
-        let points = supporter.points().points().len();
-        let limits = Limits { points, ..Limits::NONE };
-        let (slots, memory) = pose_slots(memory, pose_capacity, predict_bytes(&limits))?;
+        let (slots, memory) = pose_slots(memory, pose_capacity, predict_bytes(&supporter.limits()))?;
         let none = Monitor::new();
         let found = predict(object, supporter, &params, slots, memory, monitor.unwrap_or(&none))?;
         for (index, pose) in found.poses.iter().enumerate() {
@@ -174,19 +171,14 @@ fn pose_slots(
 
 impl From<&Prediction<'_>> for hangpose_prediction {
     fn from(found: &Prediction) -> Self {
-        let MatchingCounts { pairs, fitting, clear: matching_clear } = found.counts.matching;
-        let SettlingCounts {
-            candidates,
-            clear,
-            released,
-            rotated_off,
-            slid_off,
-            moving,
-            at_rest,
-            wedged,
-            probable,
-            firm,
-        } = found.counts.settling;
+        let (matching, candidates) = match found.counts.search {
+            SearchCounts::Sites(counts) => (counts.matching, CandidateCounts::default()),
+            SearchCounts::Contacts(counts) => (MatchingCounts::default(), counts.candidates),
+        };
+        let MatchingCounts { pairs, fitting, clear: matching_clear } = matching;
+        let CandidateCounts { made, clear } = candidates;
+        let SettlingCounts { released, rotated_off, slid_off, moving, at_rest, wedged, probable, firm } =
+            found.counts.settling;
         Self {
             struct_size: size_of::<Self>() as u32,
             pose_count: found.poses.len() as u32,
@@ -195,7 +187,7 @@ impl From<&Prediction<'_>> for hangpose_prediction {
             matching_pairs: pairs as u32,
             matching_fitting: fitting as u32,
             matching_clear: matching_clear as u32,
-            settling_candidates: candidates as u32,
+            settling_candidates: made as u32,
             settling_clear: clear as u32,
             settling_released: released as u32,
             settling_rotated_off: rotated_off as u32,

@@ -9,7 +9,8 @@ use crate::params::hangpose_params;
 use crate::status::*;
 use core::ffi::c_void;
 use hangpose_core::Monitor;
-use hangpose_core::hanging::Supporter;
+use hangpose_core::hanging::sites::SupporterCounts;
+use hangpose_core::hanging::{Supporter, SupporterPlaces};
 use hangpose_core::memory::Limits;
 
 /// A supporter, analysed, at the front of the memory that it was made in. There is nothing to free; the memory must stay
@@ -28,7 +29,7 @@ impl Model for Supporter<'static> {
 /// Bytes behind the handle for a cloud.
 fn model_bytes(cloud: &hangpose_cloud) -> usize {
     let points = cloud.point_count as usize;
-    Supporter::bytes(&Limits { points, ..Limits::NONE })
+    Supporter::bytes(&Limits::of_points(points))
 }
 
 /// Analyses `cloud` in `memory`, which takes hangpose_supporter_bytes for its size, and sets `supporter` to what it made
@@ -181,14 +182,18 @@ pub unsafe extern "C" fn hangpose_supporter_get_info(
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
     let read = |supporter: &Supporter| {
-        let (normals, counts, work) = (supporter.normals(), supporter.counts(), supporter.work());
+        let (normals, work) = (supporter.normals(), supporter.work());
+        let (contact_points, counts) = match *supporter.places() {
+            SupporterPlaces::Sites { counts, .. } => (counts.contact_points, counts),
+            SupporterPlaces::Contacts { counts, .. } => (counts.contact_points, SupporterCounts::default()),
+        };
         Ok(hangpose_supporter_info {
             struct_size: size_of::<hangpose_supporter_info>() as u32,
             stopped: stopped(supporter.stopped()),
             points: supporter.points().points().len() as u32,
             normals_estimated: normals.estimated as u32,
             normals_renormalised: normals.renormalised as u32,
-            contact_points: counts.contact_points as u32,
+            contact_points: contact_points as u32,
             clusters: counts.clusters as u32,
             sites: counts.sites as u32,
             contacts: supporter.contacts().len() as u32,

@@ -88,8 +88,7 @@ pub fn analyze_supporter<'m>(
     memory: &'m mut Vec<u8>,
     monitor: &Monitor,
 ) -> Result<Supporter<'m>, AnalysisError> {
-    let limits = Limits { points: cloud.points().len(), ..Limits::NONE };
-    memory.resize(Supporter::bytes(&limits), 0);
+    memory.resize(Supporter::bytes(&Limits::of_points(cloud.points().len())), 0);
     Supporter::analyze(cloud, params, memory, monitor)
 }
 
@@ -101,9 +100,7 @@ pub fn predict_poses<'p>(
     poses: &'p mut [HangingPose],
     monitor: &Monitor,
 ) -> Result<Prediction<'p>, PredictError> {
-    let points = supporter.points().points().len();
-    let limits = Limits { points, ..Limits::NONE };
-    predict(object, supporter, params, poses, &mut vec![0; predict_bytes(&limits)], monitor)
+    predict(object, supporter, params, poses, &mut vec![0; predict_bytes(&supporter.limits())], monitor)
 }
 
 /// A cloud of `count` points and normals from a supporter that is given as a mesh.

@@ -3,8 +3,9 @@
 //! Triangles need no conversion: `TriMesh::indices` is what [`Mesh::new`](hangpose_core::geometry::Mesh::new) takes.
 //!
 //! ```
-//! use hangpose::{parry, predict_poses};
-//! use hangpose_core::{Monitor, Params, geometry::{Cloud, Mesh}, hanging::*, memory::Limits, perception::sampling};
+//! use hangpose::geometry::{Cloud, Mesh};
+//! use hangpose::{Monitor, Params, analyze_object, analyze_supporter, parry, predict_poses};
+//! use hangpose::{hanging::HangingPose, perception::sampling};
 //! use parry3d::{math, query, shape::{Capsule, TriMesh}};
 //!
 //! # // A ring of 3 cm radius, 6 mm thick.
@@ -33,18 +34,11 @@
 //!
 //! // Where does the ring hang?
 //! let (params, monitor) = (Params::default(), Monitor::new());
-//! let limits = Limits {
-//!     vertices: ring.vertices().len(),
-//!     triangles: ring.indices().len(),
-//!     samples: params.samples,
-//!     voxels: params.voxels,
-//!     points: points.len(),
-//! };
 //! let vertices = parry::coordinates(ring.vertices());
-//! let mut memory = vec![0; Object::bytes(&limits)];
-//! let object = Object::analyze(&Mesh::new(&vertices, ring.indices())?, &params, &mut memory, &monitor)?;
-//! let mut memory = vec![0; Supporter::bytes(&limits)];
-//! let supporter = Supporter::analyze(&Cloud::new(&points, Some(&normals))?, &params, &mut memory, &monitor)?;
+//! let (mut object_memory, mut supporter_memory) = (vec![], vec![]);
+//! let object = analyze_object(&Mesh::new(&vertices, ring.indices())?, &params, &mut object_memory, &monitor)?;
+//! let cloud = Cloud::new(&points, Some(&normals))?;
+//! let supporter = analyze_supporter(&cloud, &params, &mut supporter_memory, &monitor)?;
 //! let mut poses = [HangingPose::default(); 10];
 //! let prediction = predict_poses(&object, &supporter, &params, &mut poses, &monitor)?;
 //!

@@ -1,4 +1,4 @@
-//! Why an object or a supporter cannot be analysed.
+//! Why an object or a supporter cannot be analysed, and why nothing can be predicted.
 
 use crate::memory::OutOfMemory;
 use crate::params::ParamsError;
@@ -37,3 +37,40 @@ impl core::fmt::Display for AnalysisError {
 }
 
 impl core::error::Error for AnalysisError {}
+
+/// Why nothing can be predicted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PredictError {
+    /// A constant is out of range.
+    Params(ParamsError),
+    /// The memory is too small.
+    OutOfMemory(OutOfMemory),
+    /// The params ask to let the object go, but it was analysed without [`voxels`](Params::voxels).
+    NoDistanceField,
+}
+
+impl From<ParamsError> for PredictError {
+    fn from(error: ParamsError) -> Self {
+        Self::Params(error)
+    }
+}
+
+impl From<OutOfMemory> for PredictError {
+    fn from(error: OutOfMemory) -> Self {
+        Self::OutOfMemory(error)
+    }
+}
+
+impl core::fmt::Display for PredictError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Params(error) => error.fmt(f),
+            Self::OutOfMemory(error) => error.fmt(f),
+            Self::NoDistanceField => f.write_str(
+                "the object was analysed with voxels = 0: analyse it and the supporter with the params of the prediction",
+            ),
+        }
+    }
+}
+
+impl core::error::Error for PredictError {}

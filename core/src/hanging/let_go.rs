@@ -3,7 +3,7 @@
 use super::{Object, PredictError, Supporter, predict_bytes};
 use crate::geometry::Pose;
 use crate::mechanics::{Fate, Sleep, Support, swing_out};
-use crate::memory::{Arena, Limits};
+use crate::memory::Arena;
 use crate::monitor::{Meter, Monitor, Stop};
 use crate::params::Params;
 
@@ -30,8 +30,7 @@ pub fn let_go(
     let body = object.body().ok_or(PredictError::NoDistanceField)?;
     let support = supporter.support();
     let points = supporter.points().points().len();
-    let limits = Limits { points, ..Limits::NONE };
-    let mut arena = Arena::new(memory, predict_bytes(&limits))?;
+    let mut arena = Arena::new(memory, predict_bytes(&supporter.limits()))?;
     let sleeps = arena.slice::<Sleep>(Support::sleepers(points))?;
     let mut meter = Meter::new(monitor);
     let settled = swing_out((&body, support), release, &-params.up(), params.friction, sleeps, &mut meter);

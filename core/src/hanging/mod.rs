@@ -1,78 +1,29 @@
-//! The method, one file a section of the paper.
+//! From a mesh and a cloud to ranked hanging poses.
+//!
+//! An [`Object`] and a [`Supporter`] are analysed once; [`predict`] makes [`HangingPose`]s of them, or a [`Rejection`]. Two methods find
+//! the places and the poses, each in a folder of its own: the published one in [`sites`], ours in [`contacts`]. `method.rs` alone
+//! chooses between them; the other files of this folder serve any method.
 
-mod candidates;
-mod cost;
+pub mod contacts;
 mod error;
-mod hangability;
 mod let_go;
-mod matching;
+mod method;
 mod object;
-mod object_contact;
 mod pose;
 mod predict;
-mod probability;
+mod rejection;
 mod settling;
-mod support_contact;
-mod supportability;
+pub mod sites;
 mod supporter;
 #[cfg(test)]
 mod tests;
 
-pub use cost::Cost;
-pub use error::AnalysisError;
-pub use hangability::{HangabilityCounts, HangingSite};
+pub use error::{AnalysisError, PredictError};
 pub use let_go::{LetGo, let_go};
-pub use matching::MatchingCounts;
+pub use method::{ObjectPlaces, SearchCounts, SupporterPlaces};
 pub use object::Object;
-pub use object_contact::ObjectContact;
-pub use pose::{HangingPose, Rest, SiteMatch};
-pub use predict::{Counts, PredictError, Prediction, Rejection, Stage, predict, predict_bytes};
-pub use settling::SettlingCounts;
-pub use support_contact::SupportContact;
-pub use supportability::{SupportSite, SupportabilityCounts};
+pub use pose::HangingPose;
+pub use predict::{Counts, Prediction, predict, predict_bytes};
+pub use rejection::{Rejection, Stage};
+pub use settling::{Rest, SettlingCounts};
 pub use supporter::{NormalCounts, Supporter};
-
-use crate::geometry::{Point, PointTree, Vector, mean_shift};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
-
-/// The contact points that hang together, as sections II-B and II-C select them.
-struct ContactClusters<'s> {
-    points: &'s [Point],
-    labels: &'s [u32],
-    count: usize,
-}
-
-/// Bytes of working memory for clustering up to `points` contact points.
-const fn contact_cluster_bytes(points: usize) -> usize {
-    PointTree::bytes(points)
-        .saturating_add(PointTree::scratch_bytes(points))
-        .saturating_add(mean_shift::scratch_bytes(points))
-        .saturating_add(array_bytes::<u32>(points).saturating_mul(2))
-}
-
-impl<'s> ContactClusters<'s> {
-    /// Clusters `points`, at least one, by mean shift with this bandwidth, in metres.
-    fn find(points: &[Point], bandwidth: f32, mut scratch: Arena<'s>) -> Result<Self, OutOfMemory> {
-        let seeds = scratch.slice::<u32>(points.len())?;
-        let labels = scratch.slice::<u32>(points.len())?;
-        let tree = PointTree::build(points, &mut scratch)?;
-        // Started from in the caller's order, which a turn of the frame does not change, unlike the tree's.
-        for (place, &index) in tree.order().iter().enumerate() {
-            seeds[index as usize] = place as u32;
-        }
-        let count = mean_shift::cluster(&tree, seeds, bandwidth, labels, scratch)?;
-        Ok(Self { points: tree.points(), labels, count })
-    }
-
-    /// For each cluster, how many points it has and which of them is closest to their centroid.
-    fn iter(&self) -> impl Iterator<Item = (usize, Point)> + '_ {
-        (0..self.count as u32).filter_map(|cluster| {
-            let members = || self.points.iter().zip(self.labels).filter(|m| *m.1 == cluster).map(|m| m.0);
-            let size = members().count();
-            let centroid = Point::from(members().map(|p| p.coords).sum::<Vector>() / size as f32);
-            let distance = |point: &Point| (point - centroid).norm_squared();
-            let centre = members().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-            Some((size, *centre))
-        })
-    }
-}

@@ -1,29 +1,36 @@
 //! The thing that is hung.
 
 use super::AnalysisError;
-use super::hangability::{self, Hangability, HangabilityCounts, HangingSite};
-use super::object_contact::{self, ObjectContact};
-use crate::geometry::{DistanceField, MassProperties, Mesh, Point, PointTree, Surface, Vector};
+use super::method::{self, ObjectPlaces, ObjectSlots};
+use crate::geometry::{DistanceField, MassProperties, Mesh, Point, Surface, Vector};
 use crate::mechanics::Body;
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
-use crate::params::{Candidates, Params};
-use crate::perception::sampling;
+use crate::params::Params;
 
-/// An object, analysed: shape, centre of mass and hanging sites, in object coordinates. Immutable; any number of
-/// threads may match it at once.
+/// An object, analysed: shape, centre of mass and the places by which it may hang, in object coordinates. Immutable; any number
+/// of threads may use it at once.
 #[derive(Clone, Copy)]
 pub struct Object<'m> {
     surface: Surface<'m>,
     field: Option<DistanceField<'m>>,
-    contacts: &'m [ObjectContact],
+    places: ObjectPlaces<'m>,
     reach: f32,
     mass: MassProperties,
     centre_of_mass: Point,
-    sites: &'m [HangingSite],
-    counts: HangabilityCounts,
     work: Work,
     stopped: Option<Stop>,
+}
+
+/// Samples of an object's surface, from which a method finds places.
+pub(super) struct ObjectSamples<'a> {
+    pub(super) surface: &'a Surface<'a>,
+    /// On the surface, metres.
+    pub(super) points: &'a [Point],
+    /// Unit vectors out of the solid, one a point.
+    pub(super) normals: &'a [Vector],
+    pub(super) centre_of_mass: Point,
+    pub(super) params: &'a Params,
 }
 
 impl<'m> Object<'m> {
@@ -31,8 +38,7 @@ impl<'m> Object<'m> {
     pub const fn bytes(limits: &Limits) -> usize {
         let model = Surface::bytes(limits.triangles)
             .saturating_add(DistanceField::bytes(limits.voxels))
-            .saturating_add(array_bytes::<ObjectContact>(object_contact::MAX_CONTACTS))
-            .saturating_add(array_bytes::<HangingSite>(hangability::MAX_SITES));
+            .saturating_add(method::object_bytes());
         let before_sampling = larger(
             MassProperties::scratch_bytes(limits.vertices, limits.triangles),
             larger(
@@ -41,12 +47,7 @@ impl<'m> Object<'m> {
             ),
         );
         let samples = array_bytes::<Point>(limits.samples).saturating_mul(2);
-        let after_tree =
-            larger(PointTree::scratch_bytes(limits.samples), hangability::scratch_bytes(limits.samples));
-        let with_samples = larger(
-            sampling::scratch_bytes(limits.samples),
-            PointTree::bytes(limits.samples).saturating_add(after_tree),
-        );
+        let with_samples = method::object_scratch_bytes(limits.samples);
         model_bytes(model.saturating_add(larger(before_sampling, samples.saturating_add(with_samples))))
     }
 
@@ -57,7 +58,7 @@ impl<'m> Object<'m> {
             triangles: mesh.triangles().len(),
             samples: params.samples,
             voxels: params.voxels,
-            points: 0,
+            ..Limits::NONE
         }
     }
 
@@ -80,20 +81,13 @@ impl<'m> Object<'m> {
             0 => None,
             voxels => Some(DistanceField::build(&surface, voxels, &mut arena)?),
         };
-        let contacts = arena.slice::<ObjectContact>(object_contact::MAX_CONTACTS)?;
-        let sites = arena.slice::<HangingSite>(hangability::MAX_SITES)?;
+        let slots = ObjectSlots::new(params, &mut arena)?;
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
 
         let mut scratch = arena.scratch();
         let points = scratch.slice::<Point>(params.samples)?;
         let normals = scratch.slice::<Vector>(params.samples)?;
-        match params.candidates {
-            Candidates::Sites => {
-                sampling::sample_into(mesh, params.seed, points, normals, scratch.scratch())?
-            }
-            // Contacts are kept apart as they are found.
-            Candidates::Contacts => sampling::scatter_into(mesh, params.seed, points, normals),
-        }
+        method::sample(mesh, params, points, normals, scratch.scratch())?;
         if mass.is_inside_out {
             normals.iter_mut().for_each(|normal| *normal = -*normal);
         }
@@ -101,41 +95,15 @@ impl<'m> Object<'m> {
 
         let sample_mean = mean_of(points);
         let centre_of_mass = params.resolve_centre_of_mass(sample_mean, mass.volume_centroid);
-        let mut counts = HangabilityCounts::default();
-        let (mut site_count, mut contact_count) = (0, 0);
-        let found;
-        match params.candidates {
-            Candidates::Sites => {
-                let tree = PointTree::build(points, &mut scratch)?;
-                let search =
-                    Hangability { surface: &surface, points, normals, tree: &tree, centre_of_mass, params };
-                let (left, stop) = search.find(sites, &mut meter, scratch)?;
-                (counts, site_count, found) = (left, left.sites, stop.map_or(Ok(()), Err));
-            }
-            Candidates::Contacts => {
-                let search = object_contact::Search { surface: &surface, points, normals, centre_of_mass };
-                (contact_count, found) = search.find(contacts, &mut counts, &mut meter);
-            }
-        }
-        let stopped = found.err();
+        let samples = ObjectSamples { surface: &surface, points, normals, centre_of_mass, params };
+        let (places, stopped) = slots.find(&samples, &mut meter, scratch)?;
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
         }
-        let (sites, contacts) = (&sites[..site_count], &contacts[..contact_count]);
         let corners = surface.triangles().iter().flatten();
         let reach = corners.map(|corner| (corner - centre_of_mass).norm()).fold(0.0, f32::max);
-        Ok(Self {
-            surface,
-            field,
-            contacts,
-            reach,
-            mass,
-            centre_of_mass,
-            sites,
-            counts,
-            work: meter.work,
-            stopped,
-        })
+        let work = meter.work;
+        Ok(Self { surface, field, places, reach, mass, centre_of_mass, work, stopped })
     }
 
     /// The object as mechanics sees it, if it was analysed with voxels.
@@ -159,11 +127,6 @@ impl<'m> Object<'m> {
         self.field.as_ref()
     }
 
-    /// Where the object can lie on something, what catches best first: [`Candidates::Contacts`].
-    pub fn contacts(&self) -> &'m [ObjectContact] {
-        self.contacts
-    }
-
     /// The mesh, for rays and distances.
     pub fn surface(&self) -> &Surface<'m> {
         &self.surface
@@ -179,14 +142,9 @@ impl<'m> Object<'m> {
         self.centre_of_mass
     }
 
-    /// Where the object can be hung, the best encircled site first: [`Candidates::Sites`].
-    pub fn sites(&self) -> &'m [HangingSite] {
-        self.sites
-    }
-
-    /// What was left after each step of the search for sites.
-    pub fn counts(&self) -> HangabilityCounts {
-        self.counts
+    /// Where the object may hang, by the method that it was analysed with.
+    pub fn places(&self) -> &ObjectPlaces<'m> {
+        &self.places
     }
 
     /// Rays and distance queries spent.
@@ -194,7 +152,7 @@ impl<'m> Object<'m> {
         self.work
     }
 
-    /// Why the search for sites ended early, if it did; then there may be more than [`sites`](Self::sites).
+    /// Why the search for places ended early, if it did; then [`places`](Self::places) may lack some.
     pub fn stopped(&self) -> Option<Stop> {
         self.stopped
     }

@@ -1,13 +1,12 @@
 //! The thing that is hung on.
 
 use super::AnalysisError;
-use super::support_contact::{self, SupportContact};
-use super::supportability::{self, SupportSite, Supportability, SupportabilityCounts};
-use crate::geometry::{Cloud, PointTree, Vector};
+use super::method::{self, SupporterPlaces, SupporterSlots};
+use crate::geometry::{Cloud, Point, PointTree, Vector};
 use crate::mechanics::{Room, Support};
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
-use crate::params::{Candidates, Params};
+use crate::params::Params;
 use crate::perception::normals;
 
 /// Normals shorter than this are taken as not given.
@@ -15,17 +14,25 @@ const NO_DIRECTION: f32 = 1e-6;
 /// Normals whose length is within this of one are taken as of unit length.
 const UNIT_LENGTH: f32 = 1e-3;
 
-/// A supporter, analysed: points and support sites, in supporter coordinates. Immutable; any number of threads
-/// may match it at once.
+/// A supporter, analysed: points and the places on which something may hang, in supporter coordinates. Immutable; any number of
+/// threads may use it at once.
 #[derive(Clone, Copy)]
 pub struct Supporter<'m> {
     support: Support<'m>,
-    contacts: &'m [SupportContact],
-    sites: &'m [SupportSite],
+    places: SupporterPlaces<'m>,
     normals: NormalCounts,
-    counts: SupportabilityCounts,
     work: Work,
     stopped: Option<Stop>,
+}
+
+/// The points of a supporter, on which a method finds places.
+pub(super) struct SupporterCloud<'a> {
+    pub(super) tree: &'a PointTree<'a>,
+    /// In the caller's order, metres.
+    pub(super) points: &'a [Point],
+    /// Unit vectors out of the solid, in tree order.
+    pub(super) normals: &'a [Vector],
+    pub(super) params: &'a Params,
 }
 
 /// What had to be done to the normals.
@@ -42,15 +49,13 @@ impl<'m> Supporter<'m> {
     pub const fn bytes(limits: &Limits) -> usize {
         let points = limits.points;
         let model = PointTree::bytes(points)
-            .saturating_add(array_bytes::<SupportSite>(supportability::MAX_SITES))
-            .saturating_add(array_bytes::<SupportContact>(support_contact::MAX_CONTACTS))
+            .saturating_add(method::supporter_bytes())
             .saturating_add(Room::bytes(points));
         let scratch = larger(
             PointTree::scratch_bytes(points),
-            // In the tree's order, and in the cloud's.
-            array_bytes::<Vector>(points).saturating_mul(2).saturating_add(larger(
+            array_bytes::<Vector>(points).saturating_add(larger(
                 normals::scratch_bytes(points),
-                larger(supportability::scratch_bytes(points), array_bytes::<u8>(points)),
+                larger(method::supporter_scratch_bytes(points), Support::scratch_bytes(points)),
             )),
         );
         model_bytes(model.saturating_add(scratch))
@@ -65,15 +70,12 @@ impl<'m> Supporter<'m> {
     ) -> Result<Self, AnalysisError> {
         params.validate()?;
         let points = cloud.points();
-        let limits = Limits { points: points.len(), ..Limits::NONE };
-        let mut arena = Arena::new(memory, Self::bytes(&limits))?;
+        let mut arena = Arena::new(memory, Self::bytes(&Limits::of_points(points.len())))?;
         let mut meter = Meter::new(monitor);
 
         let tree = PointTree::build(points, &mut arena)?;
-        let sites = arena.slice::<SupportSite>(supportability::MAX_SITES)?;
-
         let room = Room::new(points.len(), &mut arena)?;
-        let contacts = arena.slice::<SupportContact>(support_contact::MAX_CONTACTS)?;
+        let slots = SupporterSlots::new(params, &mut arena)?;
         let mut scratch = arena.scratch();
         let in_tree_order = scratch.slice::<Vector>(points.len())?;
         let mut normals = NormalCounts::default();
@@ -92,36 +94,16 @@ impl<'m> Supporter<'m> {
             normals::complete(&tree, in_tree_order, viewpoint, params.up(), scratch.scratch())?;
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
 
-        let mut counts = SupportabilityCounts::default();
-        let (mut site_count, mut contact_count) = (0, 0);
-        let found;
-        let support = if params.settle || params.candidates == Candidates::Contacts {
-            Support::fit(tree, in_tree_order, room, scratch.scratch())?
-        } else {
-            Support::bare(tree)
+        let support = match params.uses_mechanics() {
+            true => Support::fit(tree, in_tree_order, room, scratch.scratch())?,
+            false => Support::bare(tree),
         };
-        match params.candidates {
-            Candidates::Sites => {
-                let in_cloud_order = scratch.slice::<Vector>(points.len())?;
-                for (normal, &index) in in_tree_order.iter().zip(tree.order()) {
-                    in_cloud_order[index as usize] = *normal;
-                }
-                let search = Supportability { tree: &tree, points, normals: in_cloud_order, params };
-                let (left, stop) = search.find(sites, &mut meter, scratch)?;
-                (counts, site_count, found) = (left, left.sites, stop.map_or(Ok(()), Err));
-            }
-            Candidates::Contacts => {
-                let search = support_contact::Search { tree: &tree, normals: in_tree_order, up: params.up() };
-                (contact_count, found) = search.find(contacts, &mut counts, &mut meter);
-            }
-        }
-        let stopped = found.err();
+        let seen = SupporterCloud { tree: &tree, points, normals: in_tree_order, params };
+        let (places, stopped) = slots.find(&seen, &mut meter, scratch)?;
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
         }
-        let (sites, contacts) = (&sites[..site_count], &contacts[..contact_count]);
-        let work = meter.work;
-        Ok(Self { support, contacts, sites, normals, counts, work, stopped })
+        Ok(Self { support, places, normals, work: meter.work, stopped })
     }
 
     /// The supporter as mechanics sees it.
@@ -129,19 +111,19 @@ impl<'m> Supporter<'m> {
         &self.support
     }
 
-    /// Where something can lie on the supporter: [`Candidates::Contacts`].
-    pub fn contacts(&self) -> &'m [SupportContact] {
-        self.contacts
-    }
-
     /// The points, for neighbour queries.
     pub fn points(&self) -> &PointTree<'m> {
         &self.support.tree
     }
 
-    /// Where something can be hung, the thinnest site first: [`Candidates::Sites`].
-    pub fn sites(&self) -> &'m [SupportSite] {
-        self.sites
+    /// Limits within which any supporter of this many points is.
+    pub fn limits(&self) -> Limits {
+        Limits::of_points(self.points().points().len())
+    }
+
+    /// Where something may hang, by the method that it was analysed with.
+    pub fn places(&self) -> &SupporterPlaces<'m> {
+        &self.places
     }
 
     /// What had to be done to the normals that were given.
@@ -149,17 +131,12 @@ impl<'m> Supporter<'m> {
         self.normals
     }
 
-    /// What was left after each step of the search for sites.
-    pub fn counts(&self) -> SupportabilityCounts {
-        self.counts
-    }
-
     /// Rays and distance queries spent.
     pub fn work(&self) -> Work {
         self.work
     }
 
-    /// Why the search for sites ended early, if it did; then there may be more than [`sites`](Self::sites).
+    /// Why the search for places ended early, if it did; then [`places`](Self::places) may lack some.
     pub fn stopped(&self) -> Option<Stop> {
         self.stopped
     }

@@ -1,7 +1,8 @@
 //! The whole method on shapes with known answers, and what must not change the answer.
 
+use super::sites::Cost;
 use super::*;
-use crate::geometry::{Cloud, Pose};
+use crate::geometry::{Cloud, Point, Pose, Vector};
 use crate::mechanics::Fate;
 use crate::memory::{Limits, OutOfMemory};
 use crate::test_shapes::{self, Shape};
@@ -52,13 +53,7 @@ impl Scene {
     }
 
     fn limits(&self, params: &Params) -> Limits {
-        Limits {
-            vertices: self.object.vertices.len(),
-            triangles: self.object.triangles.len(),
-            samples: params.samples,
-            voxels: params.voxels,
-            points: self.points.len(),
-        }
+        Limits { points: self.points.len(), ..Object::limits(&self.object.mesh(), params) }
     }
 
     fn cloud(&self) -> Cloud<'_> {
@@ -95,9 +90,8 @@ fn predict<'p>(
     poses: &'p mut [HangingPose],
     monitor: &Monitor,
 ) -> Result<Prediction<'p>, PredictError> {
-    let points = supporter.points().points().len();
-    let limits = Limits { points, ..Limits::NONE };
-    super::predict(object, supporter, params, poses, &mut vec![0; predict_bytes(&limits)], monitor)
+    let memory = &mut vec![0; predict_bytes(&supporter.limits())];
+    super::predict(object, supporter, params, poses, memory, monitor)
 }
 
 /// What a pose of the paper's matching costs.

@@ -106,6 +106,11 @@ impl<'a> Support<'a> {
         Self { tree, patches: &[], representatives: &[], groups: &[], reach: 0.0 }
     }
 
+    /// Bytes of working memory for [`fit`](Self::fit).
+    pub(crate) const fn scratch_bytes(points: usize) -> usize {
+        array_bytes::<u8>(points)
+    }
+
     /// Chooses points so that every other has one near it that looks the same way, and fits their patches. `normals` are in tree order.
     pub(crate) fn fit(
         tree: PointTree<'a>,

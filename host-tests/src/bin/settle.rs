@@ -99,7 +99,7 @@ fn judge(case: &Case, count: usize) -> Vec<Said> {
     let candidates = Params { settle: false, ..params.clone() };
     let found =
         predict_poses(&object, &supporter, &candidates, &mut poses, &monitor).expect("params are valid");
-    let limits = Limits { points: cloud.points().len(), ..Limits::NONE };
+    let limits = Limits::of_points(cloud.points().len());
     let mut memory = vec![0; predict_bytes(&limits)];
     let mut random = Random::named(&case.name, 1);
     let scene = Scene { tilt: false, ..Scene::new(&case.object, &case.supporter) };

@@ -6,7 +6,8 @@ use super::{InspectArguments, Role, terminal};
 use anyhow::Result;
 use hangpose::files::{self, MeshFile, SupporterFile};
 use hangpose::geometry::{MassProperties, Vector};
-use hangpose::{Candidates, CentreOfMass, Monitor, analyze_object, analyze_supporter};
+use hangpose::hanging::{ObjectPlaces, SupporterPlaces};
+use hangpose::{CentreOfMass, Monitor, analyze_object, analyze_supporter};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -45,7 +46,7 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
         scale_warning,
         mass: *object.mass(),
         centre_of_mass: object.centre_of_mass().into(),
-        counts: object.counts(),
+        counts: object.places().into(),
         sites: json::sites(object.sites()),
         contacts: object.contacts(),
         seconds,
@@ -53,7 +54,7 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
     if arguments.json {
         return Ok(json::text(&inspected));
     }
-    let (mass, counts) = (object.mass(), object.counts());
+    let mass = object.mass();
     let mut text = format!("object, {} triangles, {}\n", inspected.triangles, closedness(mass));
     text += &format!("size            {} mm\n", millimetres(&mesh.aabb().extents()));
     text += &scale(&inspected.scale_warning);
@@ -72,12 +73,12 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
         None => "volume          none: the mesh has gaps, or not all its triangles face outwards\n".into(),
     };
     text += &format!("area            {:.1} cm2\n", mass.area * 1e4);
-    text += &match params.candidates {
-        Candidates::Sites => format!(
+    text += &match object.places() {
+        ObjectPlaces::Sites { counts, .. } => format!(
             "contact points  {}, in {} clusters, {} with free space, {} encircled, {} different\n",
             counts.contact_points, counts.clusters, counts.with_free_space, counts.encircled, counts.sites
         ),
-        Candidates::Contacts => format!(
+        ObjectPlaces::Contacts { counts, .. } => format!(
             "contact points  {}, of which {} are tried, those that catch best first\n",
             counts.contact_points, counts.contacts
         ),
@@ -129,7 +130,7 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
         scale_warning,
         normals_estimated: supporter.normals().estimated,
         normals_renormalised: supporter.normals().renormalised,
-        counts: supporter.counts(),
+        counts: supporter.places().into(),
         sites: json::sites(supporter.sites()),
         contacts: supporter.contacts(),
         seconds,
@@ -137,19 +138,18 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
     if arguments.json {
         return Ok(json::text(&inspected));
     }
-    let counts = supporter.counts();
     let mut text = format!(
         "supporter, {} points, {} normals estimated, {} brought to unit length\n",
         inspected.points, inspected.normals_estimated, inspected.normals_renormalised
     );
     text += &format!("size            {} mm\n", millimetres(&extents));
     text += &scale(&inspected.scale_warning);
-    text += &match params.candidates {
-        Candidates::Sites => format!(
+    text += &match supporter.places() {
+        SupporterPlaces::Sites { counts, .. } => format!(
             "contact points  {}, in {} clusters, {} of them sites\n",
             counts.contact_points, counts.clusters, counts.sites
         ),
-        Candidates::Contacts => {
+        SupporterPlaces::Contacts { counts, .. } => {
             format!("contact points  {}, of which {} are tried\n", counts.contact_points, counts.contacts)
         }
     };

@@ -1,11 +1,11 @@
 //! The JSON that programs read. Lengths are metres, frames have z up.
 
+use super::counts::{Counts, ObjectCounts, SupporterCounts};
 use hangpose::Params;
 use hangpose::geometry::MassProperties;
-use hangpose::hanging::{
-    Cost, Counts, HangabilityCounts, HangingPose, HangingSite, ObjectContact, Rejection, Stage,
-    SupportContact, SupportSite, SupportabilityCounts,
-};
+use hangpose::hanging::contacts::{ObjectContact, SupportContact};
+use hangpose::hanging::sites::{Cost, HangingSite, SupportSite};
+use hangpose::hanging::{HangingPose, Rejection, Stage};
 use hangpose::mechanics::{Contact, Margin};
 use serde::Serialize;
 
@@ -103,7 +103,7 @@ pub(super) struct InspectedObject<'a> {
     pub(super) scale_warning: Option<String>,
     pub(super) mass: MassProperties,
     pub(super) centre_of_mass: [f32; 3],
-    pub(super) counts: HangabilityCounts,
+    pub(super) counts: ObjectCounts,
     pub(super) sites: Vec<Site<'a, HangingSite>>,
     pub(super) contacts: &'a [ObjectContact],
     pub(super) seconds: f64,
@@ -121,7 +121,7 @@ pub(super) struct InspectedSupporter<'a> {
     pub(super) scale_warning: Option<String>,
     pub(super) normals_estimated: usize,
     pub(super) normals_renormalised: usize,
-    pub(super) counts: SupportabilityCounts,
+    pub(super) counts: SupporterCounts,
     pub(super) sites: Vec<Site<'a, SupportSite>>,
     pub(super) contacts: &'a [SupportContact],
     pub(super) seconds: f64,
@@ -170,7 +170,11 @@ pub(super) fn sites<T>(sites: &[T]) -> Vec<Site<'_, T>> {
 
 impl From<&Rejection> for Reason {
     fn from(rejection: &Rejection) -> Self {
-        Self { stage: rejection.stage, reason: rejection.stage.to_string(), counts: rejection.counts }
+        Self {
+            stage: rejection.stage,
+            reason: rejection.stage.to_string(),
+            counts: (&rejection.counts).into(),
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What the command `hangpose` understands, one file a task.
 
+mod counts;
 mod input;
 pub(crate) mod inspect;
 mod json;

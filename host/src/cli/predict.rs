@@ -9,7 +9,8 @@ use super::{PredictArguments, progress};
 use anyhow::{Context, Result};
 use hangpose::files;
 use hangpose::geometry::{Aabb, Mesh, Point};
-use hangpose::hanging::{self, HangingPose, Object, Rest, SiteMatch, Supporter, predict, predict_bytes};
+use hangpose::hanging::sites::{Cost, SiteMatch};
+use hangpose::hanging::{self, HangingPose, Object, Rest, Supporter, predict, predict_bytes};
 use hangpose::memory::Limits;
 use hangpose::{CentreOfMass, Monitor};
 use std::path::{Path, PathBuf};
@@ -96,7 +97,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
                 memory_bytes,
                 sites: PerPart { object: object.sites().len(), supporter: supporter.sites().len() },
                 contacts: PerPart { object: object.contacts().len(), supporter: supporter.contacts().len() },
-                counts: prediction.counts,
+                counts: (&prediction.counts).into(),
             },
             params,
         };
@@ -155,7 +156,7 @@ fn table(prediction: &hanging::Prediction, mesh: &Mesh, object: &Object, support
     }
     for (rank, pose) in (1..).zip(prediction.poses) {
         if let Some(SiteMatch { cost, object_site, support_site, .. }) = &pose.matched {
-            let hanging::Cost { collision, boundary, contact_area, total } = cost;
+            let Cost { collision, boundary, contact_area, total } = cost;
             let on = point(&supporter.sites()[*support_site as usize].position);
             let with = point(&object.sites()[*object_site as usize].position);
             text += &format!(

@@ -37,7 +37,7 @@ fn clouds(random: &mut Random) -> Vec<(&'static str, Vec<[f32; 3]>)> {
 fn with_tree(points: &[[f32; 3]], check: impl FnOnce(&PointTree)) {
     // Given normals, pointing down, leave nothing to estimate and nothing to hang on.
     let normals = vec![[0.0, 0.0, -1.0]; points.len()];
-    let limits = Limits { points: points.len(), ..Limits::NONE };
+    let limits = Limits::of_points(points.len());
     let mut memory = vec![0; Supporter::bytes(&limits)];
     let cloud = Cloud::new(points, Some(&normals)).unwrap();
     let supporter = Supporter::analyze(&cloud, &Params::paper(), &mut memory, &Monitor::new()).unwrap();

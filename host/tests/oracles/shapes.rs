@@ -1,9 +1,8 @@
 //! Shapes that try the queries, about 1 m wide around the origin unless a test scales and moves them.
 
 use crate::random::Random;
+use hangpose::analyze_object;
 use hangpose_core::geometry::{Mesh, Surface};
-use hangpose_core::hanging::Object;
-use hangpose_core::memory::Limits;
 use hangpose_core::{Monitor, Params};
 use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::TAU;
@@ -69,17 +68,10 @@ impl Shape {
 
     /// Builds the core's surface, by the way that users go.
     pub(crate) fn with_surface<R>(&self, check: impl FnOnce(&Surface) -> R) -> R {
-        // No field, no sites to speak of: only the mesh is asked.
+        // No distance field and few samples: the tests query only the mesh.
         let params = Params { samples: 100, ..Params::paper() };
-        let limits = Limits {
-            vertices: self.vertices.len(),
-            triangles: self.triangles.len(),
-            samples: params.samples,
-            voxels: params.voxels,
-            points: 0,
-        };
-        let mut memory = vec![0; Object::bytes(&limits)];
-        check(Object::analyze(&self.mesh(), &params, &mut memory, &Monitor::new()).unwrap().surface())
+        let (mesh, mut memory) = (self.mesh(), Vec::new());
+        check(analyze_object(&mesh, &params, &mut memory, &Monitor::new()).unwrap().surface())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Where the supporter can carry something: points that look up.
 
-use super::SupportabilityCounts;
+use super::SupporterCounts;
 use crate::geometry::{Point, PointTree, Vector};
 use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
@@ -38,30 +38,28 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Fills `slots` with contacts that are apart and returns how many.
+    /// Fills `slots` with contacts that are apart. `Some` says that the work limit ended the search early, with none.
     pub(super) fn find(
         &self,
         slots: &mut [SupportContact],
-        counts: &mut SupportabilityCounts,
         meter: &mut Meter,
-    ) -> (usize, Result<(), Stop>) {
+    ) -> (SupporterCounts, Option<Stop>) {
         let [.., least] = LEAST_COSINES;
-        counts.contact_points = self.normals.iter().filter(|normal| normal.dot(&self.up) >= least).count();
+        let contact_points = self.normals.iter().filter(|normal| normal.dot(&self.up) >= least).count();
         let mut apart = APART;
-        let count = loop {
+        let contacts = loop {
             match self.spread(apart, slots) {
                 Some(count) => break count,
                 None => apart *= FARTHER,
             }
         };
-        counts.contacts = count;
-        if let Err(stop) = meter.distance_queries(count) {
-            return (0, Err(stop));
+        if let Err(stop) = meter.distance_queries(contacts) {
+            return (SupporterCounts { contact_points, contacts: 0 }, Some(stop));
         }
-        for slot in &mut slots[..count] {
+        for slot in &mut slots[..contacts] {
             slot.bar_direction = bar_direction(self.tree, slot.position);
         }
-        (count, Ok(()))
+        (SupporterCounts { contact_points, contacts }, None)
     }
 
     /// Contacts this far apart; `None` if they are more than `slots`.

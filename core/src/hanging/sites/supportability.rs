@@ -1,6 +1,6 @@
 //! Where a supporter can carry something: section II-C.
 
-use super::{ContactClusters, contact_cluster_bytes};
+use super::clusters::Clusters;
 use crate::best::Best;
 use crate::geometry::{Point, PointTree, Vector, any_perpendicular, hull, linked_cluster, rotate_about};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
@@ -26,18 +26,15 @@ pub struct SupportSite {
     pub boundary_distances: [f32; 2],
 }
 
-/// What was left after each step.
+/// How much was left on the supporter after each step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct SupportabilityCounts {
+pub struct SupporterCounts {
     /// Points that face up, eq. (2).
     pub contact_points: usize,
     /// Clusters of them.
     pub clusters: usize,
     /// Clusters at which a slice through the supporter holds together.
     pub sites: usize,
-    /// Places of the supporter that are tried as contacts ([`Candidates::Contacts`](crate::Candidates::Contacts)).
-    pub contacts: usize,
 }
 
 /// Sites kept at most: those with the smallest radius, which most objects fit on.
@@ -45,10 +42,10 @@ pub(super) const MAX_SITES: usize = 256;
 
 /// Bytes of working memory.
 pub(super) const fn scratch_bytes(points: usize) -> usize {
-    array_bytes::<Point>(points).saturating_mul(2).saturating_add(contact_cluster_bytes(points))
+    array_bytes::<Point>(points).saturating_mul(2).saturating_add(Clusters::scratch_bytes(points))
 }
 
-/// What the search looks at.
+/// The input of the search.
 pub(super) struct Supportability<'a> {
     pub(super) tree: &'a PointTree<'a>,
     /// The points in the order in which they were given, and their normals.
@@ -65,9 +62,9 @@ impl Supportability<'_> {
         slots: &mut [SupportSite],
         meter: &mut Meter,
         mut scratch: Arena,
-    ) -> Result<(SupportabilityCounts, Option<Stop>), OutOfMemory> {
+    ) -> Result<(SupporterCounts, Option<Stop>), OutOfMemory> {
         let up = self.params.up();
-        let mut counts = SupportabilityCounts::default();
+        let mut counts = SupporterCounts::default();
         let contacts = scratch.slice::<Point>(self.points.len())?;
         let faces_up = |normal: &Vector| normal.dot(&up) > self.params.supporter_contact_cosine;
         let selected = self.points.iter().zip(self.normals).filter(|(_, normal)| faces_up(normal));
@@ -80,7 +77,7 @@ impl Supportability<'_> {
         }
         let slice = scratch.slice::<Point>(self.points.len())?;
         let bandwidth = self.params.cluster_bandwidth * self.tree.aabb().diagonal();
-        let clusters = ContactClusters::find(&contacts[..counts.contact_points], bandwidth, scratch)?;
+        let clusters = Clusters::find(&contacts[..counts.contact_points], bandwidth, scratch)?;
         counts.clusters = clusters.count;
 
         let mut sites = Best::new(slots);

@@ -4,6 +4,7 @@
 use super::object_contact::{self, ObjectContact};
 use super::support_contact::{self, SupportContact};
 use crate::geometry::{Point, Pose, Vector, any_perpendicular, unit_or};
+use crate::hanging::settling::CLEARANCE;
 use crate::mechanics::{Body, Support, first_within};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
@@ -32,8 +33,6 @@ const MOST_MADE: usize = 100_000;
 
 /// How far above the place the contact is held, metres, before the object is pushed off what it runs into.
 const LIFT: f32 = 0.0015;
-/// How far a candidate is off the supporter, metres.
-pub(super) const CLEARANCE: f32 = 0.0005;
 /// It is pushed so often at most,
 const PUSHES: usize = 5;
 /// by so much more than is missing, metres,
@@ -50,6 +49,15 @@ const PROBES: usize = 16;
 const AROUND: f32 = 0.03;
 /// So many of them make room for what was run into.
 const REMEMBERED: u32 = 8;
+
+/// How many poses were left after each step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CandidateCounts {
+    /// Poses that lay a contact of the object on one of the supporter.
+    pub made: usize,
+    /// Those that are clear of the supporter, or could be pushed off it.
+    pub clear: usize,
+}
 
 /// A pose that is clear of the supporter.
 #[derive(Clone, Copy, Debug)]
@@ -68,10 +76,7 @@ pub(super) struct CandidateSearch<'a> {
     places: &'a mut [Place],
     /// Two a contact: along the bars of the supporter, and across them.
     ways: &'a mut [Way],
-    /// How many poses were made,
-    pub(super) made: usize,
-    /// and how many of them were clear.
-    pub(super) clear: usize,
+    pub(super) counts: CandidateCounts,
 }
 
 /// A contact of the object, to be laid along or across.
@@ -134,7 +139,7 @@ impl<'a> CandidateSearch<'a> {
                 + if is_along(k) { ALONG } else { 0.0 }
                 - if passage < BAR_LENGTH { ENCLOSED } else { 0.0 };
         }
-        Ok(Self { scene, up, contacts, places, ways, made: 0, clear: 0 })
+        Ok(Self { scene, up, contacts, places, ways, counts: CandidateCounts::default() })
     }
 
     /// The most promising candidate that was not given yet.
@@ -171,14 +176,14 @@ impl<'a> CandidateSearch<'a> {
         let stride = if count.is_multiple_of(STRIDE) { 1 } else { STRIDE };
         for _ in 0..PATIENCE {
             let Way { visited, found, .. } = self.ways[index];
-            if visited as usize == count || found == PER_CONTACT || self.made >= MOST_MADE {
+            if visited as usize == count || found == PER_CONTACT || self.counts.made >= MOST_MADE {
                 self.ways[index].promise = f32::NEG_INFINITY;
                 return Ok(());
             }
             let place = visited as usize * stride % count;
             self.ways[index].visited += 1;
             if let Some(pose) = self.lay(index, place, meter)? {
-                self.clear += 1;
+                self.counts.clear += 1;
                 let way = &mut self.ways[index];
                 (way.found, way.is_waiting, way.place) = (found + 1, 1, place as u32);
                 (way.rotation, way.translation) =
@@ -221,7 +226,7 @@ impl<'a> CandidateSearch<'a> {
                 let rotation = frame(along * sign, down) * object_frame.transpose();
                 let rotation =
                     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation));
-                self.made += 1;
+                self.counts.made += 1;
                 if let Some(pose) = clear_pose(self.scene, contact, place, rotation, self.up, meter)? {
                     return Ok(Some(pose));
                 }

@@ -1,7 +1,8 @@
 //! Where the object can lie on something: points of its surface that look down when it hangs from them.
 
-use super::HangabilityCounts;
-use crate::geometry::{Point, Surface, Vector, any_perpendicular, rotate_about, unit_or};
+use super::ObjectCounts;
+use crate::geometry::{Point, Vector, any_perpendicular, rotate_about, unit_or};
+use crate::hanging::object::ObjectSamples;
 use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
 
@@ -43,32 +44,29 @@ const PASSAGE_LEVEL: f32 = 0.004;
 /// Rays start this far off the surface, metres, so that they do not hit where they come from.
 const LIFT_OFF: f32 = 1e-4;
 
-/// What the search looks at.
+/// The search on one object.
 pub(super) struct Search<'a> {
-    pub(super) surface: &'a Surface<'a>,
-    /// Samples of the surface and their normals.
-    pub(super) points: &'a [Point],
-    pub(super) normals: &'a [Vector],
-    pub(super) centre_of_mass: Point,
+    pub(super) samples: &'a ObjectSamples<'a>,
 }
 
 impl Search<'_> {
-    /// Fills `slots` with contacts, those that catch best first, and of these the narrow ones, which hold more firmly, and returns how
-    /// many; when the work limit is reached, with what was found until then.
+    /// Fills `slots` with contacts, the deepest capture first, and of equal ones the narrowest, which hold more firmly. `Some`
+    /// says that the work limit ended the search early, with the contacts found until then.
     pub(super) fn find(
         &self,
         slots: &mut [ObjectContact],
-        counts: &mut HangabilityCounts,
         meter: &mut Meter,
-    ) -> (usize, Result<(), Stop>) {
-        let apart = APART * self.surface.aabb().diagonal();
-        let (mut count, mut result) = (0, Ok(()));
-        for (point, normal) in self.points.iter().zip(self.normals) {
-            let to_centre = self.centre_of_mass - point;
+    ) -> (ObjectCounts, Option<Stop>) {
+        let ObjectSamples { surface, points, normals, centre_of_mass, .. } = *self.samples;
+        let apart = APART * surface.aabb().diagonal();
+        let (mut counts, mut stop) = (ObjectCounts::default(), None);
+        for (point, normal) in points.iter().zip(normals) {
+            let to_centre = centre_of_mass - point;
             if to_centre.dot(normal) < LEAST_COSINE * to_centre.norm() {
                 continue;
             }
             counts.contact_points += 1;
+            let count = counts.contacts;
             let is_known = |other: &ObjectContact| {
                 (other.position - point).norm_squared() < apart * apart && other.normal.dot(normal) > SAME_WAY
             };
@@ -77,31 +75,30 @@ impl Search<'_> {
             }
             match self.examine(*point, *normal, meter) {
                 Ok(contact) => slots[count] = contact,
-                Err(stop) => {
-                    result = Err(stop);
+                Err(reason) => {
+                    stop = Some(reason);
                     break;
                 }
             }
-            count += 1;
+            counts.contacts += 1;
         }
-        counts.contacts = count;
-        // Stable for equal ones: no sort without memory is, so their place in the order decides.
+        // Ties are broken by position: a sort that needs no memory is not stable.
         let place = |c: &ObjectContact| [c.position.x, c.position.y, c.position.z];
-        slots[..count].sort_unstable_by(|a, b| {
+        slots[..counts.contacts].sort_unstable_by(|a, b| {
             let by_place = || {
                 let (a, b) = (place(a), place(b));
                 a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2]))
             };
             b.capture.total_cmp(&a.capture).then(a.room.total_cmp(&b.room)).then_with(by_place)
         });
-        (count, result)
+        (counts, stop)
     }
 
     fn examine(&self, point: Point, normal: Vector, meter: &mut Meter) -> Result<ObjectContact, Stop> {
-        let down = unit_or(self.centre_of_mass - point, normal);
+        let down = unit_or(self.samples.centre_of_mass - point, normal);
         let start = point + normal * LIFT_OFF;
         meter.rays(1)?;
-        let room = self.surface.closest_hit(&start, &down).unwrap_or(f32::INFINITY);
+        let room = self.samples.surface.closest_hit(&start, &down).unwrap_or(f32::INFINITY);
         let reference = any_perpendicular(down);
         let (mut bar_direction, mut capture) = (reference, -1.0);
         for k in 0..DIRECTIONS {
@@ -110,7 +107,9 @@ impl Search<'_> {
             meter.rays(2 * LEVELS.len())?;
             let is_caught = |level: &&f32| {
                 let from = start + down * **level;
-                **level < room && self.surface.any_hit(&from, &side) && self.surface.any_hit(&from, &-side)
+                **level < room
+                    && self.samples.surface.any_hit(&from, &side)
+                    && self.samples.surface.any_hit(&from, &-side)
             };
             // From below, because what is not caught in a crease right under the contact may be caught deeper.
             let caught = LEVELS.iter().rev().find(is_caught).copied().unwrap_or(0.0);
@@ -120,7 +119,7 @@ impl Search<'_> {
         }
         let from = start + down * PASSAGE_LEVEL.min(0.5 * room);
         meter.rays(2)?;
-        let ways = [bar_direction, -bar_direction].map(|way| self.surface.closest_hit(&from, &way));
+        let ways = [bar_direction, -bar_direction].map(|way| self.samples.surface.closest_hit(&from, &way));
         let passage = ways.iter().map(|hit| hit.unwrap_or(f32::INFINITY)).fold(0.0, f32::max);
         Ok(ObjectContact { position: point, normal, bar_direction, capture, room, passage })
     }

@@ -1,8 +1,9 @@
 //! Where an object can be hung: section II-B.
 
-use super::{ContactClusters, contact_cluster_bytes};
+use super::clusters::Clusters;
 use crate::best::Best;
-use crate::geometry::{Point, PointTree, Surface, Vector, any_perpendicular, rotate_about, unit_or};
+use crate::geometry::{Point, PointTree, Vector, any_perpendicular, rotate_about, unit_or};
+use crate::hanging::object::ObjectSamples;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
 use crate::params::{MAX_DIRECTIONS, Params};
@@ -31,10 +32,9 @@ pub struct HangingSite {
     pub contact_points: u32,
 }
 
-/// What was left after each step.
+/// How much was left on the object after each step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct HangabilityCounts {
+pub struct ObjectCounts {
     /// Samples whose normal leans towards the centre of mass, eq. (3).
     pub contact_points: usize,
     /// Clusters of them, eq. (4).
@@ -45,8 +45,6 @@ pub struct HangabilityCounts {
     pub encircled: usize,
     /// Different ones among them, eq. (7).
     pub sites: usize,
-    /// Places of the object that are tried as contacts ([`Candidates::Contacts`](crate::Candidates::Contacts)).
-    pub contacts: usize,
 }
 
 /// Sites kept at most: those that are encircled best. No shape has so many different ones.
@@ -58,21 +56,16 @@ const LIFT_OFF: f32 = 1e-4;
 /// Bytes of working memory.
 pub(super) const fn scratch_bytes(samples: usize) -> usize {
     array_bytes::<Point>(samples)
-        .saturating_add(contact_cluster_bytes(samples))
+        .saturating_add(Clusters::scratch_bytes(samples))
         .saturating_add(array_bytes::<[f32; 2]>(MAX_DIRECTIONS))
         .saturating_add(array_bytes::<Hits>(MAX_DIRECTIONS))
 }
 
-/// What the search looks at.
+/// The input of the search.
 pub(super) struct Hangability<'a> {
-    pub(super) surface: &'a Surface<'a>,
-    /// Samples of the surface and their normals.
-    pub(super) points: &'a [Point],
-    pub(super) normals: &'a [Vector],
+    pub(super) samples: &'a ObjectSamples<'a>,
     /// The same samples for neighbour queries.
     pub(super) tree: &'a PointTree<'a>,
-    pub(super) centre_of_mass: Point,
-    pub(super) params: &'a Params,
 }
 
 /// Rays that hit the object.
@@ -91,10 +84,11 @@ impl Hangability<'_> {
         slots: &mut [HangingSite],
         meter: &mut Meter,
         mut scratch: Arena,
-    ) -> Result<(HangabilityCounts, Option<Stop>), OutOfMemory> {
-        let mut counts = HangabilityCounts::default();
-        let contacts = scratch.slice::<Point>(self.points.len())?;
-        let selected = self.points.iter().zip(self.normals).filter(|(p, n)| self.is_contact(p, n));
+    ) -> Result<(ObjectCounts, Option<Stop>), OutOfMemory> {
+        let mut counts = ObjectCounts::default();
+        let contacts = scratch.slice::<Point>(self.samples.points.len())?;
+        let selected =
+            self.samples.points.iter().zip(self.samples.normals).filter(|(p, n)| self.is_contact(p, n));
         for (slot, (point, _)) in contacts.iter_mut().zip(selected) {
             *slot = *point;
             counts.contact_points += 1;
@@ -103,15 +97,15 @@ impl Hangability<'_> {
             return Ok((counts, None));
         }
         let rays = self.rays(&mut scratch)?;
-        let hits = scratch.slice::<Hits>(self.params.object_directions)?;
-        let bandwidth = self.params.cluster_bandwidth * self.tree.aabb().diagonal();
-        let clusters = ContactClusters::find(&contacts[..counts.contact_points], bandwidth, scratch)?;
+        let hits = scratch.slice::<Hits>(self.samples.params.object_directions)?;
+        let bandwidth = self.samples.params.cluster_bandwidth * self.tree.aabb().diagonal();
+        let clusters = Clusters::find(&contacts[..counts.contact_points], bandwidth, scratch)?;
 
         let mut sites = Best::new(slots);
         let mut stop = None;
         for (done, (size, contact_point)) in clusters.iter().enumerate() {
             meter.progress(done as f32 / clusters.count as f32);
-            if size <= self.params.min_cluster_points {
+            if size <= self.samples.params.min_cluster_points {
                 continue;
             }
             counts.clusters += 1;
@@ -124,19 +118,19 @@ impl Hangability<'_> {
                 }
             }
         }
-        counts.sites = prune_similar(sites.into_slice(), self.params);
+        counts.sites = prune_similar(sites.into_slice(), self.samples.params);
         Ok((counts, stop))
     }
 
     /// Eq. (3): the normal leans towards the centre of mass.
     fn is_contact(&self, point: &Point, normal: &Vector) -> bool {
-        let to_centre = self.centre_of_mass - point;
-        to_centre.dot(normal) > self.params.object_contact_cosine * to_centre.norm()
+        let to_centre = self.samples.centre_of_mass - point;
+        to_centre.dot(normal) > self.samples.params.object_contact_cosine * to_centre.norm()
     }
 
     /// Cosine and sine of the angle of each ray against "above".
     fn rays<'s>(&self, scratch: &mut Arena<'s>) -> Result<&'s [[f32; 2]], OutOfMemory> {
-        let rays = scratch.slice::<[f32; 2]>(self.params.rays_per_direction)?;
+        let rays = scratch.slice::<[f32; 2]>(self.samples.params.rays_per_direction)?;
         let step = core::f32::consts::TAU / rays.len() as f32;
         for (index, ray) in rays.iter_mut().enumerate() {
             let (sin, cos) = libm::sincosf(index as f32 * step);
@@ -152,11 +146,11 @@ impl Hangability<'_> {
         contact_points: usize,
         rays: &[[f32; 2]],
         hits: &mut [Hits],
-        counts: &mut HangabilityCounts,
+        counts: &mut ObjectCounts,
         meter: &mut Meter,
     ) -> Result<Option<HangingSite>, Stop> {
         // `n_i`: down, when the object hangs from this point.
-        let down = unit_or(self.centre_of_mass - contact_point, -Vector::z());
+        let down = unit_or(self.samples.centre_of_mass - contact_point, -Vector::z());
         let Some((position, free_space_radius)) = self.free_space(contact_point, down, meter)? else {
             return Ok(None);
         };
@@ -175,8 +169,8 @@ impl Hangability<'_> {
             contact_points: contact_points as u32,
         };
         // Eq. (6), with each half normalised by its own rays and in the sense of the text around it.
-        let is_encircled = site.encircled_above >= self.params.min_encircled_above
-            && site.encircled_below >= self.params.min_encircled_below;
+        let is_encircled = site.encircled_above >= self.samples.params.min_encircled_above
+            && site.encircled_below >= self.samples.params.min_encircled_below;
         counts.encircled += usize::from(is_encircled);
         Ok(is_encircled.then_some(site))
     }
@@ -189,13 +183,13 @@ impl Hangability<'_> {
         down: Vector,
         meter: &mut Meter,
     ) -> Result<Option<(Point, f32)>, Stop> {
-        let steps = self.params.free_space_steps;
+        let steps = self.samples.params.free_space_steps;
         meter.rays(1)?;
         meter.distance_queries(steps + 1)?;
         let start = contact_point + down * LIFT_OFF;
-        let opposite = match self.surface.closest_hit(&start, &down) {
+        let opposite = match self.samples.surface.closest_hit(&start, &down) {
             Some(distance) => start + down * distance,
-            None => self.centre_of_mass,
+            None => self.samples.centre_of_mass,
         };
         let (mut centre, mut radius_squared) = (contact_point, 0.0);
         for step in 0..steps {
@@ -206,7 +200,8 @@ impl Hangability<'_> {
             }
         }
         let radius = libm::sqrtf(radius_squared);
-        let is_free = radius > self.params.min_free_space_radius && !self.surface.is_inside(&centre);
+        let is_free =
+            radius > self.samples.params.min_free_space_radius && !self.samples.surface.is_inside(&centre);
         Ok(is_free.then_some((centre, radius)))
     }
 
@@ -229,7 +224,7 @@ impl Hangability<'_> {
             let side = direction(j).cross(&down);
             *hits = Hits { all: 0, above: 0 };
             for ray in rays {
-                let hit = self.surface.any_hit(&position, &(side * ray[1] - down * ray[0]));
+                let hit = self.samples.surface.any_hit(&position, &(side * ray[1] - down * ray[0]));
                 hits.all += u32::from(hit);
                 hits.above += u32::from(hit && is_above(ray));
             }

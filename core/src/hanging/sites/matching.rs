@@ -1,15 +1,15 @@
 //! Which object site fits on which support site, and how: section II-D.
 
-use super::{Cost, HangingPose, HangingSite, Object, SiteMatch, SupportSite, Supporter};
+use super::{Cost, HangingSite, SupportSite};
 use crate::best::Best;
 use crate::geometry::{Point, PointTree, Pose, Surface, Vector, any_perpendicular, unit_or};
+use crate::hanging::{HangingPose, Object, Supporter};
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
 use nalgebra::{Matrix3, Rotation3, Translation3, UnitQuaternion};
 
-/// What was left after each step.
+/// How much was left of the pairs after each step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct MatchingCounts {
     /// Pairs of an object site and a support site.
     pub pairs: usize,
@@ -18,6 +18,27 @@ pub struct MatchingCounts {
     /// Poses, two a fitting pair, found with no more collisions than allowed. Poses that others were sure to
     /// outrank are not looked at to the end and not counted.
     pub clear: usize,
+}
+
+/// An object site on a support site: section II-D.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SiteMatch {
+    /// What it costs.
+    pub cost: Cost,
+    /// Index among [`Object::sites`](crate::hanging::Object::sites).
+    pub object_site: u32,
+    /// Index among [`Supporter::sites`](crate::hanging::Supporter::sites).
+    pub support_site: u32,
+    /// Whether the object's hanging direction is laid against the supporter's instead of along it.
+    pub is_reversed: bool,
+}
+
+impl SiteMatch {
+    /// The order of the ranking: by total cost, then by sites, so that it is the same however it is computed.
+    fn is_better(&self, other: &Self) -> bool {
+        let sites = |m: &Self| (m.support_site, m.object_site, m.is_reversed);
+        self.cost.total.total_cmp(&other.cost.total).then(sites(self).cmp(&sites(other))).is_lt()
+    }
 }
 
 /// Tries all pairs of sites and offers their poses to `poses`.

@@ -1,25 +1,24 @@
 //! Which candidates come to rest, and how firmly.
 
-use super::candidates::{self, CandidateSearch};
-use super::pose::Rest;
-use super::{HangingPose, probability};
+mod probability;
+mod rest;
+
+pub use rest::Rest;
+
+use super::HangingPose;
 use crate::best::Best;
 use crate::geometry::Pose;
 use crate::mechanics::{
     Body, Fate, Settings, Settled, Sleep, Support, comes_free, firmness, is_off_surface, release_pose, settle,
 };
+use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
 
 /// What became of the poses that were let go.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SettlingCounts {
-    /// Poses that were made: that lay a contact of the object on one of the supporter.
-    pub candidates: usize,
-    /// Those that are clear of the supporter, or could be pushed off it.
-    pub clear: usize,
-    /// Those that were let go.
+    /// Poses that were released.
     pub released: usize,
     /// Of these, those that rotated off,
     pub rotated_off: usize,
@@ -47,8 +46,8 @@ pub(super) struct Settling<'a> {
     pub(super) counts: SettlingCounts,
 }
 
-/// So many times more poses are let go while none stays than once one does.
-const MORE_WHILE_NONE_STAYS: usize = 4;
+/// Distance of a candidate from the supporter, metres, below which it is not released.
+pub(super) const CLEARANCE: f32 = 0.0005;
 /// Tilts below this, radians, are not worth the time for the others.
 const WORTHLESS_TILT: f32 = 0.15;
 /// A release that comes closer to the supporter than this, metres, is as good as none: clouds are no more exact.
@@ -57,9 +56,6 @@ const LEAST_GAP: f32 = 0.0001;
 const MOST_SINKING: f32 = 0.01;
 /// So many places to let it go from are tried at most.
 const RELEASES: usize = 3;
-
-/// What was tried promises less; a rest takes off this share of it.
-const REST_SHARE: f32 = 0.6;
 
 /// Where to let the object go.
 struct Release {
@@ -71,38 +67,20 @@ struct Release {
     sinking: f32,
 }
 
-impl Settling<'_> {
-    /// Lets the most promising candidates go until enough stay firmly, or offers them as they are if gravity is not to act.
-    pub(super) fn search(
-        &mut self,
-        candidates: &mut CandidateSearch,
-        poses: &mut Best<HangingPose>,
-        meter: &mut Meter,
-    ) -> Result<(), Stop> {
-        if !self.params.settle {
-            while let Some(candidate) = candidates.next(meter)? {
-                // They come in order.
-                poses.offer(HangingPose { pose: candidate.pose, ..HangingPose::default() }, |_, _| false);
-                if poses.is_full() {
-                    break;
-                }
-                candidates.discount(&candidate, 1.0);
-            }
-            return Ok(());
-        }
-        let attempts = self.params.settle_attempts;
-        for attempt in 0..attempts {
-            meter.progress(attempt as f32 / attempts as f32);
-            let Some(candidate) = candidates.next(meter)? else { break };
-            let pose = HangingPose { pose: candidate.pose, ..HangingPose::default() };
-            let stays = self.release(&pose, poses, meter)?;
-            candidates.discount(&candidate, if stays { REST_SHARE } else { 1.0 });
-            let has_enough = self.counts.firm >= self.params.firm_enough;
-            if has_enough || self.counts.probable > 0 && MORE_WHILE_NONE_STAYS * (attempt + 1) >= attempts {
-                break;
-            }
-        }
-        Ok(())
+impl<'a> Settling<'a> {
+    /// Takes working memory, of [`bytes`](Self::bytes), from `arena`.
+    pub(super) fn new(
+        (body, support): (&'a Body<'a>, &'a Support<'a>),
+        params: &'a Params,
+        arena: &mut Arena<'a>,
+    ) -> Result<Self, OutOfMemory> {
+        let sleeps = arena.slice::<Sleep>(Support::sleepers(support.tree.points().len()))?;
+        Ok(Self { body, support, params, sleeps, counts: SettlingCounts::default() })
+    }
+
+    /// Bytes of working memory, for a supporter of `points`.
+    pub(super) const fn bytes(points: usize) -> usize {
+        array_bytes::<Sleep>(Support::sleepers(points))
     }
 
     /// Lets each of `poses` go, moves those that stay to the front, the most probable first, and returns how many they are.
@@ -125,7 +103,7 @@ impl Settling<'_> {
     }
 
     /// Lets the object go, offers what is probable enough to `poses`, and returns whether it stays.
-    fn release(
+    pub(super) fn release(
         &mut self,
         start: &HangingPose,
         poses: &mut Best<HangingPose>,
@@ -133,7 +111,7 @@ impl Settling<'_> {
     ) -> Result<bool, Stop> {
         let scene = (self.body, self.support);
         // What is finer than the field's voxels shows only here.
-        if !is_off_surface(scene, &start.pose, candidates::CLEARANCE, meter)? {
+        if !is_off_surface(scene, &start.pose, CLEARANCE, meter)? {
             return Ok(false);
         }
         self.counts.released += 1;

@@ -1,0 +1,117 @@
+//! Our method: contact candidates of the object are laid on contact candidates of the supporter, about the true centre of mass,
+//! and gravity decides which of the poses hang.
+//!
+//! | step | file |
+//! |---|---|
+//! | contact candidates of the object | `object_contact.rs` |
+//! | contact candidates of the supporter | `support_contact.rs` |
+//! | poses that lay one on the other, clear of the supporter, the most promising first | `candidates.rs` |
+//! | their release, one after the other, until enough of them hang | `search.rs` |
+
+mod candidates;
+mod object_contact;
+mod search;
+mod support_contact;
+
+pub use candidates::CandidateCounts;
+pub use object_contact::ObjectContact;
+pub(super) use search::search;
+pub use support_contact::SupportContact;
+
+use super::Stage;
+use super::object::ObjectSamples;
+use super::supporter::SupporterCloud;
+use crate::geometry::{Mesh, Point, Vector};
+use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::monitor::{Meter, Stop};
+use crate::perception::sampling;
+
+/// How much was left on the object after each step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ObjectCounts {
+    /// Samples whose normal leans towards the centre of mass.
+    pub contact_points: usize,
+    /// Contact candidates among them.
+    pub contacts: usize,
+}
+
+/// How much was left on the supporter after each step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SupporterCounts {
+    /// Points whose normal leans upwards.
+    pub contact_points: usize,
+    /// Contact candidates among them.
+    pub contacts: usize,
+}
+
+/// How much was left after each step of the method.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// On the object.
+    pub object: ObjectCounts,
+    /// On the supporter.
+    pub supporter: SupporterCounts,
+    /// Of the poses that lay a contact of the object on one of the supporter.
+    pub candidates: CandidateCounts,
+}
+
+impl Counts {
+    /// The first step that left nothing.
+    pub(super) fn empty_stage(&self) -> Option<Stage> {
+        let steps = [
+            (self.object.contacts, Stage::NoContactPoints),
+            (self.supporter.contacts, Stage::NoSupport),
+            (self.candidates.clear, Stage::AllCollide),
+        ];
+        steps.iter().find(|(left, _)| *left == 0).map(|(_, stage)| *stage)
+    }
+}
+
+/// Bytes of the contacts of an object.
+pub(super) const fn object_bytes() -> usize {
+    array_bytes::<ObjectContact>(object_contact::MAX_CONTACTS)
+}
+
+/// Memory for the contacts of an object.
+pub(super) fn object_slots<'m>(arena: &mut Arena<'m>) -> Result<&'m mut [ObjectContact], OutOfMemory> {
+    arena.slice(object_contact::MAX_CONTACTS)
+}
+
+/// Draws independent samples: contacts keep their distance as they are found, so that the samples need not.
+pub(super) fn sample(mesh: &Mesh, seed: u64, points: &mut [Point], normals: &mut [Vector]) {
+    sampling::scatter_into(mesh, seed, points, normals);
+}
+
+/// Fills `slots` with the object's contacts, the deepest capture first. `Some` says why the search ended early.
+pub(super) fn find_on_object(
+    samples: &ObjectSamples,
+    slots: &mut [ObjectContact],
+    meter: &mut Meter,
+) -> (ObjectCounts, Option<Stop>) {
+    object_contact::Search { samples }.find(slots, meter)
+}
+
+/// Bytes of the contacts of a supporter.
+pub(super) const fn supporter_bytes() -> usize {
+    array_bytes::<SupportContact>(support_contact::MAX_CONTACTS)
+}
+
+/// Memory for the contacts of a supporter.
+pub(super) fn supporter_slots<'m>(arena: &mut Arena<'m>) -> Result<&'m mut [SupportContact], OutOfMemory> {
+    arena.slice(support_contact::MAX_CONTACTS)
+}
+
+/// Fills `slots` with the supporter's contacts. `Some` says why the search ended early.
+pub(super) fn find_on_supporter(
+    cloud: &SupporterCloud,
+    slots: &mut [SupportContact],
+    meter: &mut Meter,
+) -> (SupporterCounts, Option<Stop>) {
+    let up = cloud.params.up();
+    support_contact::Search { tree: cloud.tree, normals: cloud.normals, up }.find(slots, meter)
+}
+
+/// Bytes of working memory for [`search`], beside that for settling.
+pub(super) const fn search_bytes() -> usize {
+    candidates::CandidateSearch::bytes()
+}

@@ -1,0 +1,266 @@
+//! The one place that knows which methods there are, and chooses by [`Params::candidates`].
+//!
+//! A method is a folder with the same entry points: `object_bytes`, `object_slots`, `sample` and `find_on_object`; the same for a supporter;
+//! `search`, which writes poses; and `Counts::empty_stage`, which names the step that left nothing.
+
+use super::contacts::{self, ObjectContact, SupportContact};
+use super::object::ObjectSamples;
+use super::settling::SettlingCounts;
+use super::sites::{self, HangingSite, SupportSite};
+use super::supporter::SupporterCloud;
+use super::{HangingPose, Object, PredictError, Stage, Supporter};
+use crate::geometry::{Mesh, Point, Vector};
+use crate::memory::{Arena, OutOfMemory};
+use crate::monitor::{Meter, Stop};
+use crate::params::{Candidates, Params};
+
+/// Memory for what a method keeps of an object.
+pub(super) enum ObjectSlots<'m> {
+    Sites(&'m mut [HangingSite]),
+    Contacts(&'m mut [ObjectContact]),
+}
+
+/// What a method found on an object.
+#[derive(Clone, Copy, Debug)]
+pub enum ObjectPlaces<'m> {
+    /// By the published method.
+    Sites {
+        /// The hanging sites, the best encircled first.
+        sites: &'m [HangingSite],
+        /// How much was left after each step.
+        counts: sites::ObjectCounts,
+    },
+    /// By ours.
+    Contacts {
+        /// The contact candidates, the deepest capture first.
+        contacts: &'m [ObjectContact],
+        /// How much was left after each step.
+        counts: contacts::ObjectCounts,
+    },
+}
+
+/// Bytes of what a method keeps of an object. The sum over the methods, because `Limits` do not say which one it is for.
+pub(super) const fn object_bytes() -> usize {
+    sites::object_bytes().saturating_add(contacts::object_bytes())
+}
+
+/// Bytes of working memory for `samples` points of an object and what is found on them, for any method.
+pub(super) const fn object_scratch_bytes(samples: usize) -> usize {
+    // Contacts are sampled and found in place.
+    sites::object_scratch_bytes(samples)
+}
+
+/// Draws points and outward normals from a mesh as the method needs them.
+pub(super) fn sample(
+    mesh: &Mesh,
+    params: &Params,
+    points: &mut [Point],
+    normals: &mut [Vector],
+    scratch: Arena,
+) -> Result<(), OutOfMemory> {
+    match params.candidates {
+        Candidates::Sites => sites::sample(mesh, params.seed, points, normals, scratch),
+        Candidates::Contacts => {
+            contacts::sample(mesh, params.seed, points, normals);
+            Ok(())
+        }
+    }
+}
+
+impl<'m> ObjectSlots<'m> {
+    pub(super) fn new(params: &Params, arena: &mut Arena<'m>) -> Result<Self, OutOfMemory> {
+        Ok(match params.candidates {
+            Candidates::Sites => Self::Sites(sites::object_slots(arena)?),
+            Candidates::Contacts => Self::Contacts(contacts::object_slots(arena)?),
+        })
+    }
+
+    /// Fills the slots. `Some` says why the search ended early.
+    pub(super) fn find(
+        self,
+        samples: &ObjectSamples,
+        meter: &mut Meter,
+        scratch: Arena,
+    ) -> Result<(ObjectPlaces<'m>, Option<Stop>), OutOfMemory> {
+        Ok(match self {
+            Self::Sites(slots) => {
+                let (counts, stop) = sites::find_on_object(samples, slots, meter, scratch)?;
+                (ObjectPlaces::Sites { sites: &slots[..counts.sites], counts }, stop)
+            }
+            Self::Contacts(slots) => {
+                let (counts, stop) = contacts::find_on_object(samples, slots, meter);
+                (ObjectPlaces::Contacts { contacts: &slots[..counts.contacts], counts }, stop)
+            }
+        })
+    }
+}
+
+impl<'m> Object<'m> {
+    /// The hanging sites, the best encircled first; none unless it was analysed with [`Candidates::Sites`].
+    pub fn sites(&self) -> &'m [HangingSite] {
+        if let ObjectPlaces::Sites { sites, .. } = *self.places() { sites } else { &[] }
+    }
+
+    /// The contact candidates, the deepest capture first; none unless it was analysed with [`Candidates::Contacts`].
+    pub fn contacts(&self) -> &'m [ObjectContact] {
+        if let ObjectPlaces::Contacts { contacts, .. } = *self.places() { contacts } else { &[] }
+    }
+
+    pub(super) fn site_counts(&self) -> sites::ObjectCounts {
+        if let ObjectPlaces::Sites { counts, .. } = *self.places() { counts } else { Default::default() }
+    }
+
+    pub(super) fn contact_counts(&self) -> contacts::ObjectCounts {
+        if let ObjectPlaces::Contacts { counts, .. } = *self.places() { counts } else { Default::default() }
+    }
+}
+
+/// Memory for what a method keeps of a supporter.
+pub(super) enum SupporterSlots<'m> {
+    Sites(&'m mut [SupportSite]),
+    Contacts(&'m mut [SupportContact]),
+}
+
+/// What a method found on a supporter.
+#[derive(Clone, Copy, Debug)]
+pub enum SupporterPlaces<'m> {
+    /// By the published method.
+    Sites {
+        /// The support sites, the thinnest first.
+        sites: &'m [SupportSite],
+        /// How much was left after each step.
+        counts: sites::SupporterCounts,
+    },
+    /// By ours.
+    Contacts {
+        /// The contact candidates, those on level ground first.
+        contacts: &'m [SupportContact],
+        /// How much was left after each step.
+        counts: contacts::SupporterCounts,
+    },
+}
+
+/// Bytes of what a method keeps of a supporter; the sum over the methods, as for an object.
+pub(super) const fn supporter_bytes() -> usize {
+    sites::supporter_bytes().saturating_add(contacts::supporter_bytes())
+}
+
+/// Bytes of working memory for finding places on a supporter of `points`, for any method.
+pub(super) const fn supporter_scratch_bytes(points: usize) -> usize {
+    sites::supporter_scratch_bytes(points)
+}
+
+impl<'m> SupporterSlots<'m> {
+    pub(super) fn new(params: &Params, arena: &mut Arena<'m>) -> Result<Self, OutOfMemory> {
+        Ok(match params.candidates {
+            Candidates::Sites => Self::Sites(sites::supporter_slots(arena)?),
+            Candidates::Contacts => Self::Contacts(contacts::supporter_slots(arena)?),
+        })
+    }
+
+    /// Fills the slots. `Some` says why the search ended early.
+    pub(super) fn find(
+        self,
+        cloud: &SupporterCloud,
+        meter: &mut Meter,
+        scratch: Arena,
+    ) -> Result<(SupporterPlaces<'m>, Option<Stop>), OutOfMemory> {
+        Ok(match self {
+            Self::Sites(slots) => {
+                let (counts, stop) = sites::find_on_supporter(cloud, slots, meter, scratch)?;
+                (SupporterPlaces::Sites { sites: &slots[..counts.sites], counts }, stop)
+            }
+            Self::Contacts(slots) => {
+                let (counts, stop) = contacts::find_on_supporter(cloud, slots, meter);
+                (SupporterPlaces::Contacts { contacts: &slots[..counts.contacts], counts }, stop)
+            }
+        })
+    }
+}
+
+impl<'m> Supporter<'m> {
+    /// The support sites, the thinnest first; none unless it was analysed with [`Candidates::Sites`].
+    pub fn sites(&self) -> &'m [SupportSite] {
+        if let SupporterPlaces::Sites { sites, .. } = *self.places() { sites } else { &[] }
+    }
+
+    /// The contact candidates; none unless it was analysed with [`Candidates::Contacts`].
+    pub fn contacts(&self) -> &'m [SupportContact] {
+        if let SupporterPlaces::Contacts { contacts, .. } = *self.places() { contacts } else { &[] }
+    }
+
+    pub(super) fn site_counts(&self) -> sites::SupporterCounts {
+        if let SupporterPlaces::Sites { counts, .. } = *self.places() { counts } else { Default::default() }
+    }
+
+    pub(super) fn contact_counts(&self) -> contacts::SupporterCounts {
+        if let SupporterPlaces::Contacts { counts, .. } = *self.places() {
+            counts
+        } else {
+            Default::default()
+        }
+    }
+}
+
+/// What a search found.
+pub(super) struct Found<C> {
+    /// How many poses it wrote.
+    pub(super) poses: usize,
+    /// How much was left after each step.
+    pub(super) counts: C,
+    /// What became of the poses that it released.
+    pub(super) settling: SettlingCounts,
+    /// Why it ended early, if it did.
+    pub(super) stop: Option<Stop>,
+}
+
+/// How much was left after each step of a method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SearchCounts {
+    /// Of the published method.
+    Sites(sites::Counts),
+    /// Of ours.
+    Contacts(contacts::Counts),
+}
+
+impl SearchCounts {
+    /// The first step that left nothing.
+    pub(super) fn empty_stage(&self) -> Option<Stage> {
+        match self {
+            Self::Sites(counts) => counts.empty_stage(),
+            Self::Contacts(counts) => counts.empty_stage(),
+        }
+    }
+}
+
+/// Bytes of working memory for [`search`] by any method, beside that for settling.
+pub(super) const fn search_bytes() -> usize {
+    // Sites are matched in place.
+    contacts::search_bytes()
+}
+
+/// Writes the best poses to `poses`, best first.
+pub(super) fn search(
+    object: &Object,
+    supporter: &Supporter,
+    params: &Params,
+    poses: &mut [HangingPose],
+    arena: Arena,
+    meter: &mut Meter,
+) -> Result<Found<SearchCounts>, PredictError> {
+    Ok(match params.candidates {
+        Candidates::Sites => {
+            sites::search(object, supporter, params, poses, arena, meter)?.map(SearchCounts::Sites)
+        }
+        Candidates::Contacts => {
+            contacts::search(object, supporter, params, poses, arena, meter)?.map(SearchCounts::Contacts)
+        }
+    })
+}
+
+impl<C> Found<C> {
+    fn map<D>(self, wrap: impl FnOnce(C) -> D) -> Found<D> {
+        let Self { poses, counts, settling, stop } = self;
+        Found { poses, counts: wrap(counts), settling, stop }
+    }
+}

@@ -1,0 +1,89 @@
+//! Why nothing hangs.
+
+use super::{Counts, SettlingCounts};
+
+/// Why nothing hangs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rejection {
+    /// The first step that left nothing.
+    pub stage: Stage,
+    /// How much was left after each step.
+    pub counts: Counts,
+}
+
+/// The step of the method that left nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
+pub enum Stage {
+    /// Nowhere does the object's surface face its centre of mass, or only in specks: eqs. (3) and (4).
+    NoContactPoints,
+    /// There is no room beside the object's contact points for a supporter.
+    NoFreeSpace,
+    /// The free spaces are open to the side, so that a supporter would slip out: eq. (6).
+    NotEncircled,
+    /// Nothing on the supporter faces up and holds together: section II-C.
+    NoSupport,
+    /// The supporter is too thick for every free space of the object.
+    TooThick,
+    /// Every pose runs the supporter through the object.
+    AllCollide,
+    /// Let go, the object turns and falls off, or most often does.
+    RotatesOff,
+    /// Let go, the object slides off or falls through, or most often does.
+    SlidesOff,
+    /// Let go, the object does not come to rest.
+    NeverRests,
+    /// The object comes to rest, but a nudge would bring it down, it would not come off again, or there is no room to put it
+    /// there.
+    TooLoose,
+}
+
+impl core::fmt::Display for Stage {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::NoContactPoints => {
+                "the object has no surface that faces its centre of mass and could rest on a support"
+            }
+            Self::NoFreeSpace => "the object has no free space for a supporter beside its contact points",
+            Self::NotEncircled => {
+                "the object does not enclose any of its free spaces, a supporter would slip out"
+            }
+            Self::NoSupport => "the supporter has no part that faces up",
+            Self::TooThick => {
+                "every part of the supporter that faces up is too thick for the object's free spaces"
+            }
+            Self::AllCollide => "in every pose the supporter runs through the object",
+            Self::RotatesOff => "wherever it is let go, the object rotates off",
+            Self::SlidesOff => "wherever it is let go, the object slides off",
+            Self::NeverRests => "wherever it is let go, the object does not come to rest",
+            Self::TooLoose => "where the object comes to rest it is stuck, or a nudge would bring it down",
+        })
+    }
+}
+
+impl Counts {
+    /// The first step that left nothing. With `settle` the poses that were released count, too.
+    pub(super) fn empty_stage(&self, settle: bool) -> Option<Stage> {
+        let empty = self.search.empty_stage();
+        if empty.is_some() || !settle || self.settling.probable > 0 {
+            empty
+        } else {
+            Some(self.settling.failure())
+        }
+    }
+}
+
+impl SettlingCounts {
+    /// The most frequent way in which released poses failed.
+    fn failure(&self) -> Stage {
+        let fates = [
+            (self.at_rest, Stage::TooLoose),
+            (self.rotated_off, Stage::RotatesOff),
+            (self.slid_off, Stage::SlidesOff),
+            (self.moving, Stage::NeverRests),
+        ];
+        // Of equally frequent ones the first.
+        let most = fates.iter().rev().max_by_key(|(count, _)| *count).filter(|(count, _)| *count > 0);
+        most.map_or(Stage::AllCollide, |(_, stage)| *stage)
+    }
+}

@@ -1,0 +1,133 @@
+//! How much was left after each step, as the JSON has it: one shape for both methods, zeros for the steps of the other one.
+
+use hangpose::hanging::{self, ObjectPlaces, SearchCounts, SupporterPlaces, contacts, sites};
+use serde::Serialize;
+
+#[derive(Serialize)]
+pub(super) struct Counts {
+    hangability: ObjectCounts,
+    supportability: SupporterCounts,
+    matching: MatchingCounts,
+    settling: SettlingCounts,
+}
+
+#[derive(Default, Serialize)]
+pub(super) struct ObjectCounts {
+    contact_points: usize,
+    clusters: usize,
+    with_free_space: usize,
+    encircled: usize,
+    sites: usize,
+    contacts: usize,
+}
+
+#[derive(Default, Serialize)]
+pub(super) struct SupporterCounts {
+    contact_points: usize,
+    clusters: usize,
+    sites: usize,
+    contacts: usize,
+}
+
+#[derive(Default, Serialize)]
+struct MatchingCounts {
+    pairs: usize,
+    fitting: usize,
+    clear: usize,
+}
+
+#[derive(Serialize)]
+struct SettlingCounts {
+    candidates: usize,
+    clear: usize,
+    released: usize,
+    rotated_off: usize,
+    slid_off: usize,
+    moving: usize,
+    at_rest: usize,
+    wedged: usize,
+    probable: usize,
+    firm: usize,
+}
+
+impl From<&hanging::Counts> for Counts {
+    fn from(counts: &hanging::Counts) -> Self {
+        let (hangability, supportability, matching, candidates) = match counts.search {
+            SearchCounts::Sites(sites::Counts { object, supporter, matching }) => {
+                let sites::MatchingCounts { pairs, fitting, clear } = matching;
+                let matching = MatchingCounts { pairs, fitting, clear };
+                (object.into(), supporter.into(), matching, contacts::CandidateCounts::default())
+            }
+            SearchCounts::Contacts(contacts::Counts { object, supporter, candidates }) => {
+                (object.into(), supporter.into(), MatchingCounts::default(), candidates)
+            }
+        };
+        let hanging::SettlingCounts {
+            released,
+            rotated_off,
+            slid_off,
+            moving,
+            at_rest,
+            wedged,
+            probable,
+            firm,
+        } = counts.settling;
+        let settling = SettlingCounts {
+            candidates: candidates.made,
+            clear: candidates.clear,
+            released,
+            rotated_off,
+            slid_off,
+            moving,
+            at_rest,
+            wedged,
+            probable,
+            firm,
+        };
+        Self { hangability, supportability, matching, settling }
+    }
+}
+
+impl From<&ObjectPlaces<'_>> for ObjectCounts {
+    fn from(places: &ObjectPlaces) -> Self {
+        match *places {
+            ObjectPlaces::Sites { counts, .. } => counts.into(),
+            ObjectPlaces::Contacts { counts, .. } => counts.into(),
+        }
+    }
+}
+
+impl From<sites::ObjectCounts> for ObjectCounts {
+    fn from(counts: sites::ObjectCounts) -> Self {
+        let sites::ObjectCounts { contact_points, clusters, with_free_space, encircled, sites } = counts;
+        Self { contact_points, clusters, with_free_space, encircled, sites, contacts: 0 }
+    }
+}
+
+impl From<contacts::ObjectCounts> for ObjectCounts {
+    fn from(contacts::ObjectCounts { contact_points, contacts }: contacts::ObjectCounts) -> Self {
+        Self { contact_points, contacts, ..Self::default() }
+    }
+}
+
+impl From<&SupporterPlaces<'_>> for SupporterCounts {
+    fn from(places: &SupporterPlaces) -> Self {
+        match *places {
+            SupporterPlaces::Sites { counts, .. } => counts.into(),
+            SupporterPlaces::Contacts { counts, .. } => counts.into(),
+        }
+    }
+}
+
+impl From<sites::SupporterCounts> for SupporterCounts {
+    fn from(counts: sites::SupporterCounts) -> Self {
+        let sites::SupporterCounts { contact_points, clusters, sites } = counts;
+        Self { contact_points, clusters, sites, contacts: 0 }
+    }
+}
+
+impl From<contacts::SupporterCounts> for SupporterCounts {
+    fn from(contacts::SupporterCounts { contact_points, contacts }: contacts::SupporterCounts) -> Self {
+        Self { contact_points, contacts, ..Self::default() }
+    }
+}
