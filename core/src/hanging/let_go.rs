@@ -1,4 +1,4 @@
-//! What becomes of an object that is let go at any pose, also one that was not predicted.
+//! Simulates the release of an object at any pose, predicted or not.
 
 use super::{Object, PredictError, Supporter, predict_bytes};
 use crate::geometry::Pose;
@@ -7,17 +7,17 @@ use crate::memory::Arena;
 use crate::monitor::{Meter, Monitor, Stop};
 use crate::params::Params;
 
-/// What becomes of an object that is let go.
+/// The outcome of a release.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LetGo {
-    /// How it ends.
+    /// Whether the object rests, falls or moves at the end.
     pub fate: Fate,
-    /// Where it ends, or was when that was clear: maps object coordinates to supporter coordinates; metres.
+    /// The last pose of the simulation, which ends as soon as the fate is certain: maps object coordinates to supporter coordinates; metres.
     pub pose: Pose,
 }
 
-/// Lets the object go at `release`, object to supporter coordinates, and watches for four seconds at most; or says why the monitor
-/// stopped that. `memory` is working memory of [`predict_bytes`](super::predict_bytes).
+/// Releases the object at `release`, which maps object to supporter coordinates, and simulates up to four seconds. The inner error says
+/// why the monitor stopped the simulation. `memory` is working memory, [`predict_bytes`](super::predict_bytes) of it.
 pub fn let_go(
     object: &Object,
     supporter: &Supporter,

@@ -7,12 +7,12 @@ use crate::geometry::Pose;
 /// A pose in which the object hangs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HangingPose {
-    /// Where to let the object go: maps object coordinates to supporter coordinates; metres. `T_ij` of section II-D, or as close
-    /// to where it comes to rest as the clearance allows.
+    /// The release pose: maps object coordinates to supporter coordinates; metres. `T_ij` of section II-D, or, with
+    /// [`Params::settle`](crate::Params::settle), as close to the rest pose as the clearance allows.
     pub pose: Pose,
-    /// What gravity then makes of it, if gravity was asked ([`Params::settle`](crate::Params::settle)).
+    /// The rest pose and its margins; `None` without [`Params::settle`](crate::Params::settle).
     pub rest: Option<Rest>,
-    /// The sites that it joins, if it comes from the paper's matching ([`Candidates::Sites`](crate::Candidates::Sites)).
+    /// The pair of sites that it joins; `None` unless it comes from [`Candidates::Sites`](crate::Candidates::Sites).
     pub matched: Option<SiteMatch>,
 }
 

@@ -11,13 +11,13 @@ pub struct Rejection {
     pub counts: Counts,
 }
 
-/// The step of the method that left nothing.
+/// The step that left nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum Stage {
     /// Nowhere does the object's surface face its centre of mass, or only in specks: eqs. (3) and (4).
     NoContactPoints,
-    /// There is no room beside the object's contact points for a supporter.
+    /// No contact point has free space below it for a supporter.
     NoFreeSpace,
     /// The free spaces are open to the side, so that a supporter would slip out: eq. (6).
     NotEncircled,
@@ -27,14 +27,13 @@ pub enum Stage {
     TooThick,
     /// Every pose runs the supporter through the object.
     AllCollide,
-    /// Let go, the object turns and falls off, or most often does.
+    /// Most released poses rotate and fall off.
     RotatesOff,
-    /// Let go, the object slides off or falls through, or most often does.
+    /// Most released poses slide off or fall through.
     SlidesOff,
-    /// Let go, the object does not come to rest.
+    /// Most released poses do not come to rest in time.
     NeverRests,
-    /// The object comes to rest, but a nudge would bring it down, it would not come off again, or there is no room to put it
-    /// there.
+    /// Released poses come to rest, but too loosely to be given, or wedged, or with no room for a release pose near by.
     TooLoose,
 }
 
@@ -46,17 +45,17 @@ impl core::fmt::Display for Stage {
             }
             Self::NoFreeSpace => "the object has no free space for a supporter beside its contact points",
             Self::NotEncircled => {
-                "the object does not enclose any of its free spaces, a supporter would slip out"
+                "the object encloses none of its free spaces, so a supporter would slip out"
             }
             Self::NoSupport => "the supporter has no part that faces up",
             Self::TooThick => {
                 "every part of the supporter that faces up is too thick for the object's free spaces"
             }
-            Self::AllCollide => "in every pose the supporter runs through the object",
-            Self::RotatesOff => "wherever it is let go, the object rotates off",
-            Self::SlidesOff => "wherever it is let go, the object slides off",
-            Self::NeverRests => "wherever it is let go, the object does not come to rest",
-            Self::TooLoose => "where the object comes to rest it is stuck, or a nudge would bring it down",
+            Self::AllCollide => "in every pose the supporter penetrates the object",
+            Self::RotatesOff => "no released pose stays: most often the object rotates off",
+            Self::SlidesOff => "no released pose stays: most often the object slides off or falls through",
+            Self::NeverRests => "no released pose stays: most often the object is still moving when the time is up",
+            Self::TooLoose => "no released pose stays: most often the object is wedged where it rests, or a small disturbance brings it down",
         })
     }
 }

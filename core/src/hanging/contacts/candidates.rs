@@ -1,8 +1,9 @@
-//! Poses worth letting go of: a contact of the object, which can lie on something, laid on a place of the supporter that can carry
-//! something, with the centre of mass straight below. They are made one at a time, the most promising first.
+//! Candidate poses: a contact of the object is laid on a contact of the supporter, with the centre of mass straight below. They are
+//! made one at a time, the highest score first.
 
-use super::object_contact::{self, ObjectContact};
-use super::support_contact::{self, SupportContact};
+use super::constants::*;
+use super::object_contact::ObjectContact;
+use super::support_contact::SupportContact;
 use crate::geometry::{Point, Pose, Vector, any_perpendicular, unit_or};
 use crate::hanging::settling::CLEARANCE;
 use crate::mechanics::{Body, Support, first_within};
@@ -11,51 +12,12 @@ use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
 use nalgebra::{Matrix3, Quaternion, Rotation3, Translation3, UnitQuaternion};
 
-/// What a contact promises that catches this or less, metres.
-const LEAST_CAPTURE: f32 = 0.00075;
-/// What it promises more to lay the bar along the direction in which the object catches it best.
-const ALONG: f32 = 1.0;
-/// What it promises less if no level bar that is longer than this, metres, gets to it: what is inside a cup.
-const ENCLOSED: f32 = 2.0;
-const BAR_LENGTH: f32 = 0.1;
-/// What it takes off the promise of a contact of the object that it was let go,
-const TRIED_OBJECT: f32 = 0.5;
-/// and off that of a place of the supporter.
-const TRIED_SUPPORT: f32 = 0.3;
-/// After so many places without room others that promise as much have their turn:
-const PATIENCE: usize = 8;
-/// so little is taken off.
-const NO_ROOM: f32 = 0.001;
-/// A contact is let go on at most so many places: what does not stay on these would hardly on others.
-const PER_CONTACT: u32 = 4;
-/// Poses that are made at most: where there is no room for so many, there is none.
-const MOST_MADE: usize = 100_000;
-
-/// How far above the place the contact is held, metres, before the object is pushed off what it runs into.
-const LIFT: f32 = 0.0015;
-/// It is pushed so often at most,
-const PUSHES: usize = 5;
-/// by so much more than is missing, metres,
-const SPARE: f32 = 0.0002;
-/// not out of what is deeper in it than this, metres, and no farther than this.
-const MOST_DEPTH: f32 = 0.003;
-const MOST_PUSH: f32 = 0.004;
-
-/// A bar that is steeper than this, as a sine, is also followed.
-const LEVEL: f32 = 0.1;
-/// Points around a place that are tried before all others.
-const PROBES: usize = 16;
-/// ... and from how far around, metres.
-const AROUND: f32 = 0.03;
-/// So many of them make room for what was run into.
-const REMEMBERED: u32 = 8;
-
 /// How many poses were left after each step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CandidateCounts {
     /// Poses that lay a contact of the object on one of the supporter.
     pub made: usize,
-    /// Those that are clear of the supporter, or could be pushed off it.
+    /// Those that are clear of the supporter, some after being pushed off it.
     pub clear: usize,
 }
 
@@ -68,57 +30,59 @@ pub(super) struct Candidate {
     place: usize,
 }
 
-/// Makes candidates.
+/// Makes candidates in the order of their scores.
 pub(super) struct CandidateSearch<'a> {
     scene: (&'a Body<'a>, &'a Support<'a>),
     up: Vector,
     contacts: &'a [ObjectContact],
     places: &'a mut [Place],
-    /// Two a contact: along the bars of the supporter, and across them.
+    /// Two for each contact of the object: its bar direction along the supporter's bars, and across them.
     ways: &'a mut [Way],
     pub(super) counts: CandidateCounts,
 }
 
-/// A contact of the object, to be laid along or across.
+/// A contact of the object in one of its two directions, and how far its trials have got.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct Way {
-    /// The logarithm of how deep it catches a bar, less what it has disappointed.
-    promise: f32,
-    /// How many places it was laid on,
+    /// Logarithm of the capture depth, less the discounts for releases that failed.
+    score: f32,
+    /// Number of places it was laid on.
     visited: u32,
-    /// and on how many of them it was clear.
+    /// Number of places on which a pose was clear.
     found: u32,
-    /// Not zero if the last of these was not given yet:
+    /// 1 while the last clear pose has not been returned, else 0.
     is_waiting: u32,
-    /// which it was, and the pose, a quaternion x, y, z, w and a translation.
+    /// Index of the place of that pose.
     place: u32,
+    /// Rotation of that pose, a quaternion x, y, z, w.
     rotation: [f32; 4],
+    /// Translation of that pose, metres.
     translation: [f32; 3],
 }
 
-/// A contact of the supporter, made ready.
+/// A contact of the supporter with what laying an object on it needs.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct Place {
     position: Point,
-    /// Unit vectors along the bar: level, and as it is.
+    /// Unit vector along the bar's projection onto the horizontal plane.
     level: Vector,
+    /// Unit vector along the bar.
     bar: Vector,
-    /// What it has disappointed.
-    tried: f32,
-    /// Some of the points around, and those that were run into last.
+    /// Sum of the discounts for releases here that failed.
+    discount: f32,
+    /// Points that are tested for collision first: some around the place, and those hit last.
     probes: [Point; PROBES],
     probe_count: u32,
-    /// How often one was run into.
-    met: u32,
+    /// Number of collisions remembered so far.
+    collisions: u32,
 }
 
 impl<'a> CandidateSearch<'a> {
     /// Bytes of working memory.
     pub(super) const fn bytes() -> usize {
-        array_bytes::<Place>(support_contact::MAX_CONTACTS)
-            .saturating_add(array_bytes::<Way>(2 * object_contact::MAX_CONTACTS))
+        array_bytes::<Place>(MAX_SUPPORT_CONTACTS).saturating_add(array_bytes::<Way>(2 * MAX_OBJECT_CONTACTS))
     }
 
     pub(super) fn new(
@@ -135,27 +99,27 @@ impl<'a> CandidateSearch<'a> {
         let ways = arena.slice::<Way>(2 * contacts.len())?;
         for (k, way) in ways.iter_mut().enumerate() {
             let ObjectContact { capture, passage, .. } = contacts[k / 2];
-            way.promise = libm::logf(capture.max(LEAST_CAPTURE) / LEAST_CAPTURE)
-                + if is_along(k) { ALONG } else { 0.0 }
-                - if passage < BAR_LENGTH { ENCLOSED } else { 0.0 };
+            way.score = libm::logf(capture.max(MIN_CAPTURE) / MIN_CAPTURE)
+                + if is_along(k) { ALONG_BONUS } else { 0.0 }
+                - if passage < BAR_LENGTH { ENCLOSED_PENALTY } else { 0.0 };
         }
         Ok(Self { scene, up, contacts, places, ways, counts: CandidateCounts::default() })
     }
 
-    /// The most promising candidate that was not given yet.
+    /// The candidate with the highest score that has not been returned yet.
     pub(super) fn next(&mut self, meter: &mut Meter) -> Result<Option<Candidate>, Stop> {
         loop {
-            // Where it is not known yet on which place there is room, none may have disappointed. Of equal ones the first, which
-            // catches best.
+            // Until the next place with room is known, a place's discount cannot count. Of equal scores the first wins, which has
+            // the deepest capture.
             let value = |way: &Way| match way.is_waiting {
-                0 => way.promise,
-                _ => way.promise - self.places[way.place as usize].tried,
+                0 => way.score,
+                _ => way.score - self.places[way.place as usize].discount,
             };
             let ways = self.ways.iter().enumerate().rev();
             let Some((index, best)) = ways.max_by(|(_, a), (_, b)| value(a).total_cmp(&value(b))) else {
                 break;
             };
-            if best.promise == f32::NEG_INFINITY {
+            if best.score == f32::NEG_INFINITY {
                 break;
             }
             if best.is_waiting > 0 {
@@ -164,20 +128,23 @@ impl<'a> CandidateSearch<'a> {
                 self.ways[index].is_waiting = 0;
                 return Ok(Some(candidate));
             }
-            self.look_for_room(index, meter)?;
+            self.find_clear_place(index, meter)?;
         }
         Ok(None)
     }
 
-    /// Lays a contact on the next places until it is clear on one.
-    fn look_for_room(&mut self, index: usize, meter: &mut Meter) -> Result<(), Stop> {
-        // Neighbours in the list are neighbours on the supporter: the first ones are to be far apart.
+    /// Lays a contact on the next places until it is clear on one, on at most [`PATIENCE`] of them.
+    fn find_clear_place(&mut self, index: usize, meter: &mut Meter) -> Result<(), Stop> {
+        // Neighbours in the list are neighbours on the supporter, but consecutive trials should be far apart.
         let count = self.places.len();
-        let stride = if count.is_multiple_of(STRIDE) { 1 } else { STRIDE };
+        let stride = if count.is_multiple_of(PLACE_STRIDE) { 1 } else { PLACE_STRIDE };
         for _ in 0..PATIENCE {
             let Way { visited, found, .. } = self.ways[index];
-            if visited as usize == count || found == PER_CONTACT || self.counts.made >= MOST_MADE {
-                self.ways[index].promise = f32::NEG_INFINITY;
+            if visited as usize == count
+                || found == MAX_PLACES_PER_CONTACT
+                || self.counts.made >= MAX_POSES_MADE
+            {
+                self.ways[index].score = f32::NEG_INFINITY;
                 return Ok(());
             }
             let place = visited as usize * stride % count;
@@ -191,19 +158,19 @@ impl<'a> CandidateSearch<'a> {
                 return Ok(());
             }
         }
-        self.ways[index].promise -= NO_ROOM;
+        self.ways[index].score -= NO_ROOM_DISCOUNT;
         Ok(())
     }
 
-    /// Takes a share off what others with the same contact or on the same place promise.
+    /// Takes a share of the discounts off the scores of the candidates with the same contact or on the same place.
     pub(super) fn discount(&mut self, candidate: &Candidate, share: f32) {
         for way in &mut self.ways[2 * candidate.contact..][..2] {
-            way.promise -= share * TRIED_OBJECT;
+            way.score -= share * OBJECT_DISCOUNT;
         }
-        self.places[candidate.place].tried += share * TRIED_SUPPORT;
+        self.places[candidate.place].discount += share * SUPPORT_DISCOUNT;
     }
 
-    /// Lays a contact on a place, one way round or the other, if it is clear there.
+    /// The clear pose of a contact on a place, in either sense of the bar direction, if there is one.
     fn lay(&mut self, way: usize, place: usize, meter: &mut Meter) -> Result<Option<Pose>, Stop> {
         let (contact, place_index, place) = (&self.contacts[way / 2], place, &mut self.places[place]);
         let down = unit_or(self.scene.0.centre - contact.position, -contact.normal);
@@ -214,11 +181,11 @@ impl<'a> CandidateSearch<'a> {
             let across = self.up.cross(&place.level);
             (across, across)
         };
-        // Which comes first is drawn by lot.
+        // Either sense comes first for half of the pairs.
         let first = if (way / 2 + place_index).is_multiple_of(2) { 1.0 } else { -1.0 };
         for sign in [first, -first] {
-            // With the centre of mass straight below, or, for a long hole, as steep as the bar.
-            for (along, is_needed) in [(level, true), (bar, bar.dot(&self.up).abs() > LEVEL)] {
+            // With the centre of mass straight below; or tilted with the bar, as a long hole has to be.
+            for (along, is_needed) in [(level, true), (bar, bar.dot(&self.up).abs() > LEVEL_SINE)] {
                 if !is_needed {
                     continue;
                 }
@@ -236,9 +203,6 @@ impl<'a> CandidateSearch<'a> {
     }
 }
 
-/// Places are gone through in such steps, which is coprime to any number of them that is not a multiple of it.
-const STRIDE: usize = 37;
-
 fn is_along(way: usize) -> bool {
     way.is_multiple_of(2)
 }
@@ -250,7 +214,8 @@ impl Way {
     }
 }
 
-/// The pose with this rotation that holds `contact` just above `place`, pushed off what it runs into, if that makes it clear.
+/// The pose with this rotation that holds `contact` just above `place`. Small penetrations are resolved by pushes; `None` if that does
+/// not make it clear.
 fn clear_pose(
     scene: (&Body, &Support),
     contact: &ObjectContact,
@@ -263,11 +228,11 @@ fn clear_pose(
     let to_object = rotation.to_rotation_matrix().transpose();
     let start = place.position + up * LIFT - rotation * contact.position;
     let mut shift = start;
-    for _ in 0..PUSHES {
+    for _ in 0..MAX_PUSHES {
         let (mut least, mut point) = (CLEARANCE, None);
         for (count, probe) in place.probes[..place.probe_count as usize].iter().enumerate() {
             let gap = field.distance(&Point::from(to_object * (probe.coords - shift)));
-            if gap < -MOST_DEPTH {
+            if gap < -MAX_PENETRATION {
                 meter.distance_queries(count)?;
                 return Ok(None);
             }
@@ -284,8 +249,8 @@ fn clear_pose(
         }
         let Some(point) = point else { break };
         let (gap, gradient) = field.sample(&Point::from(to_object * (point.coords - shift)));
-        shift -= rotation * gradient * (CLEARANCE + SPARE - gap);
-        if gap < -MOST_DEPTH || (shift - start).norm() > MOST_PUSH {
+        shift -= rotation * gradient * (CLEARANCE + PUSH_OVERSHOOT - gap);
+        if gap < -MAX_PENETRATION || (shift - start).norm() > MAX_PUSH {
             break;
         }
     }
@@ -298,32 +263,32 @@ impl Place {
         let level = bar - up * bar.dot(&up);
         let level = if level.norm() > 0.2 { level.normalize() } else { any_perpendicular(up) };
         let (probes, probe_count) = probes(support, contact.position);
-        Self { position: contact.position, level, bar, tried: 0.0, probes, probe_count, met: 0 }
+        Self { position: contact.position, level, bar, discount: 0.0, probes, probe_count, collisions: 0 }
     }
 
-    /// What one object's contact runs into here, the next is likely to run into as well.
+    /// Adds a point of a collision to the probes: the next pose is likely to collide with it as well.
     fn remember(&mut self, point: Point) {
         let slot = if self.probe_count < PROBES as u32 {
             self.probe_count += 1;
             self.probe_count - 1
         } else {
-            PROBES as u32 - 1 - self.met % REMEMBERED
+            PROBES as u32 - 1 - self.collisions % REMEMBERED_PROBES
         };
         self.probes[slot as usize] = point;
-        self.met += 1;
+        self.collisions += 1;
     }
 }
 
-/// Some of the points around a place, spread over all of them, and how many.
+/// A sample of the points around a place, and its size.
 fn probes(support: &Support, place: Point) -> ([Point; PROBES], u32) {
     let mut probes = [Point::origin(); PROBES];
     let mut count = 0_u32;
-    support.tree.for_each_within(&place, AROUND, |neighbour| {
+    support.tree.for_each_within(&place, PROBE_RADIUS, |neighbour| {
         let point = support.tree.points()[neighbour.index as usize];
         let slot = if count < PROBES as u32 {
             count as usize
         } else {
-            // A later one replaces an earlier one as often as not, by a fixed hash of how many came before.
+            // Reservoir sampling with a fixed hash of the count instead of random numbers, so that runs repeat.
             (count.wrapping_mul(2_654_435_761) >> 16) as usize % (4 * PROBES)
         };
         if let Some(probe) = probes.get_mut(slot) {
@@ -334,7 +299,7 @@ fn probes(support: &Support, place: Point) -> ([Point; PROBES], u32) {
     (probes, count.min(PROBES as u32))
 }
 
-/// The right-handed frame of a direction, made perpendicular, and down.
+/// The right-handed frame of `down` and the part of `along` that is perpendicular to it.
 fn frame(along: Vector, down: Vector) -> Matrix3<f32> {
     let along = unit_or(along - down * along.dot(&down), any_perpendicular(down));
     Matrix3::from_columns(&[along, down, along.cross(&down)])

@@ -7,8 +7,10 @@
 //! | contact candidates of the supporter | `support_contact.rs` |
 //! | poses that lay one on the other, clear of the supporter, the most promising first | `candidates.rs` |
 //! | their release, one after the other, until enough of them hang | `search.rs` |
+//! | the constants of all of these | `constants.rs` |
 
 mod candidates;
+mod constants;
 mod object_contact;
 mod search;
 mod support_contact;
@@ -69,12 +71,12 @@ impl Counts {
 
 /// Bytes of the contacts of an object.
 pub(super) const fn object_bytes() -> usize {
-    array_bytes::<ObjectContact>(object_contact::MAX_CONTACTS)
+    array_bytes::<ObjectContact>(constants::MAX_OBJECT_CONTACTS)
 }
 
 /// Memory for the contacts of an object.
 pub(super) fn object_slots<'m>(arena: &mut Arena<'m>) -> Result<&'m mut [ObjectContact], OutOfMemory> {
-    arena.slice(object_contact::MAX_CONTACTS)
+    arena.slice(constants::MAX_OBJECT_CONTACTS)
 }
 
 /// Draws independent samples: contacts keep their distance as they are found, so that the samples need not.
@@ -93,12 +95,12 @@ pub(super) fn find_on_object(
 
 /// Bytes of the contacts of a supporter.
 pub(super) const fn supporter_bytes() -> usize {
-    array_bytes::<SupportContact>(support_contact::MAX_CONTACTS)
+    array_bytes::<SupportContact>(constants::MAX_SUPPORT_CONTACTS)
 }
 
 /// Memory for the contacts of a supporter.
 pub(super) fn supporter_slots<'m>(arena: &mut Arena<'m>) -> Result<&'m mut [SupportContact], OutOfMemory> {
-    arena.slice(support_contact::MAX_CONTACTS)
+    arena.slice(constants::MAX_SUPPORT_CONTACTS)
 }
 
 /// Fills `slots` with the supporter's contacts. `Some` says why the search ended early.

@@ -1,12 +1,13 @@
-//! Where the object can lie on something: points of its surface that look down when it hangs from them.
+//! Contact candidates of the object: points of its surface that face down when it hangs from them.
 
 use super::ObjectCounts;
+use super::constants::*;
 use crate::geometry::{Point, Vector, any_perpendicular, rotate_about, unit_or};
 use crate::hanging::object::ObjectSamples;
 use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
 
-/// A point of the object that can lie on a support, in object coordinates.
+/// A point of the object that may rest on a supporter, in object coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[repr(C)]
@@ -15,34 +16,16 @@ pub struct ObjectContact {
     pub position: Point,
     /// Unit vector out of the solid.
     pub normal: Vector,
-    /// Unit vector along the thin bar that the object catches best under the point; its sign means nothing.
+    /// Unit vector along the thin bar that the object catches best below the point; its sign has no meaning.
     pub bar_direction: Vector,
-    /// How far such a bar must come down before it gets out sideways, metres; 0 if it is not caught.
+    /// Capture depth: how far such a bar must descend before it can leave sideways, metres; 0 if it is not caught.
     pub capture: f32,
-    /// How far it is to the surface opposite, metres; infinite where there is none.
+    /// Distance to the surface opposite, metres; infinite if there is none.
     pub room: f32,
-    /// How far such a bar gets along its direction, on the side where it gets farther, metres; infinite where nothing stops it, as
-    /// in a hole.
+    /// Free length for such a bar along its direction, towards the freer side, metres; infinite where nothing stops it, as in a
+    /// hole.
     pub passage: f32,
 }
-
-/// Contacts kept at most. They are samples of the surface that are apart; those that come first stay.
-pub(super) const MAX_CONTACTS: usize = 192;
-/// Contacts that look the same way are apart by this share of the object's diagonal.
-const APART: f32 = 0.02;
-/// ... and look the same way if their normals have this cosine.
-const SAME_WAY: f32 = 0.7;
-/// Least cosine between the normal and the direction to the centre of mass: eq. (3), with less asked than in the paper, because
-/// gravity has the last word.
-const LEAST_COSINE: f32 = 0.3;
-/// Directions of a bar that are tried.
-const DIRECTIONS: usize = 6;
-/// How far below the contact it is looked to the sides, metres.
-const LEVELS: [f32; 6] = [0.0015, 0.003, 0.006, 0.012, 0.024, 0.048];
-/// How far below the contact it is looked along the bar, metres: about where a bar's middle comes to be.
-const PASSAGE_LEVEL: f32 = 0.004;
-/// Rays start this far off the surface, metres, so that they do not hit where they come from.
-const LIFT_OFF: f32 = 1e-4;
 
 /// The search on one object.
 pub(super) struct Search<'a> {
@@ -58,17 +41,18 @@ impl Search<'_> {
         meter: &mut Meter,
     ) -> (ObjectCounts, Option<Stop>) {
         let ObjectSamples { surface, points, normals, centre_of_mass, .. } = *self.samples;
-        let apart = APART * surface.aabb().diagonal();
+        let apart = OBJECT_SPACING * surface.aabb().diagonal();
         let (mut counts, mut stop) = (ObjectCounts::default(), None);
         for (point, normal) in points.iter().zip(normals) {
             let to_centre = centre_of_mass - point;
-            if to_centre.dot(normal) < LEAST_COSINE * to_centre.norm() {
+            if to_centre.dot(normal) < MIN_OBJECT_COSINE * to_centre.norm() {
                 continue;
             }
             counts.contact_points += 1;
             let count = counts.contacts;
             let is_known = |other: &ObjectContact| {
-                (other.position - point).norm_squared() < apart * apart && other.normal.dot(normal) > SAME_WAY
+                (other.position - point).norm_squared() < apart * apart
+                    && other.normal.dot(normal) > SIMILAR_NORMALS
             };
             if count == slots.len() || slots[..count].iter().any(is_known) {
                 continue;
@@ -96,28 +80,29 @@ impl Search<'_> {
 
     fn examine(&self, point: Point, normal: Vector, meter: &mut Meter) -> Result<ObjectContact, Stop> {
         let down = unit_or(self.samples.centre_of_mass - point, normal);
-        let start = point + normal * LIFT_OFF;
+        let start = point + normal * RAY_OFFSET;
         meter.rays(1)?;
         let room = self.samples.surface.closest_hit(&start, &down).unwrap_or(f32::INFINITY);
         let reference = any_perpendicular(down);
         let (mut bar_direction, mut capture) = (reference, -1.0);
-        for k in 0..DIRECTIONS {
-            let along = rotate_about(down, core::f32::consts::PI * k as f32 / DIRECTIONS as f32, reference);
+        for k in 0..BAR_DIRECTIONS {
+            let along =
+                rotate_about(down, core::f32::consts::PI * k as f32 / BAR_DIRECTIONS as f32, reference);
             let side = along.cross(&down);
-            meter.rays(2 * LEVELS.len())?;
+            meter.rays(2 * CAPTURE_DEPTHS.len())?;
             let is_caught = |level: &&f32| {
                 let from = start + down * **level;
                 **level < room
                     && self.samples.surface.any_hit(&from, &side)
                     && self.samples.surface.any_hit(&from, &-side)
             };
-            // From below, because what is not caught in a crease right under the contact may be caught deeper.
-            let caught = LEVELS.iter().rev().find(is_caught).copied().unwrap_or(0.0);
+            // From the deepest up: a crease right below the contact may catch nothing although a deeper level does.
+            let caught = CAPTURE_DEPTHS.iter().rev().find(is_caught).copied().unwrap_or(0.0);
             if caught > capture {
                 (bar_direction, capture) = (along, caught);
             }
         }
-        let from = start + down * PASSAGE_LEVEL.min(0.5 * room);
+        let from = start + down * PASSAGE_DEPTH.min(0.5 * room);
         meter.rays(2)?;
         let ways = [bar_direction, -bar_direction].map(|way| self.samples.surface.closest_hit(&from, &way));
         let passage = ways.iter().map(|hit| hit.unwrap_or(f32::INFINITY)).fold(0.0, f32::max);

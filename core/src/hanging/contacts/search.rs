@@ -2,6 +2,7 @@
 
 use super::Counts;
 use super::candidates::CandidateSearch;
+use super::constants::{ATTEMPT_DIVISOR, REST_SHARE};
 use crate::best::Best;
 use crate::hanging::method::Found;
 use crate::hanging::settling::Settling;
@@ -9,11 +10,6 @@ use crate::hanging::{HangingPose, Object, PredictError, Supporter};
 use crate::memory::Arena;
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
-
-/// Factor on the attempt budget while no pose has come to rest.
-const MORE_WHILE_NONE_STAYS: usize = 4;
-/// Share of the discount for a contact or place that is taken off where the object came to rest, instead of all of it.
-const REST_SHARE: f32 = 0.6;
 
 /// Writes the best poses to `poses`: with [`Params::settle`] those that stay when released, otherwise the candidates as they are
 /// made.
@@ -75,7 +71,7 @@ fn release(
         let stays = settling.release(&pose, poses, meter)?;
         candidates.discount(&candidate, if stays { REST_SHARE } else { 1.0 });
         let has_enough = settling.counts.firm >= firm_enough;
-        if has_enough || settling.counts.probable > 0 && MORE_WHILE_NONE_STAYS * (attempt + 1) >= attempts {
+        if has_enough || settling.counts.probable > 0 && ATTEMPT_DIVISOR * (attempt + 1) >= attempts {
             break;
         }
     }

@@ -1,35 +1,25 @@
-//! Where the supporter can carry something: points that look up.
+//! Contact candidates of the supporter: points that face up.
 
 use super::SupporterCounts;
+use super::constants::*;
 use crate::geometry::{Point, PointTree, Vector};
 use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
 
-/// A point of the supporter that something can lie on, in supporter coordinates.
+/// A point of the supporter on which an object may rest, in supporter coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[repr(C)]
 pub struct SupportContact {
-    /// Metres.
+    /// A point of the cloud, metres.
     pub position: Point,
-    /// Out of the solid.
+    /// Unit vector out of the solid.
     pub normal: Vector,
-    /// Unit vector along which the supporter stretches around the point; its sign means nothing.
+    /// Unit vector along the direction of greatest extent of the supporter around the point; its sign has no meaning.
     pub bar_direction: Vector,
 }
 
-/// Contacts kept at most.
-pub(super) const MAX_CONTACTS: usize = 96;
-
-/// They are this far apart, metres, or farther where there would be too many.
-const APART: f32 = 0.012;
-/// By so much farther then.
-const FARTHER: f32 = 1.4;
-/// Least cosine between the normal and up: `alpha_s` of section II-C. The ridges of bars come first, so that contacts are on them and
-/// not on their flanks; at last less is asked than in the paper, for steep pegs.
-const LEAST_COSINES: [f32; 4] = [0.95, 0.8, 0.6, 0.3];
-
-/// What the search looks at.
+/// The search on one supporter.
 pub(super) struct Search<'a> {
     pub(super) tree: &'a PointTree<'a>,
     /// In tree order.
@@ -44,13 +34,13 @@ impl Search<'_> {
         slots: &mut [SupportContact],
         meter: &mut Meter,
     ) -> (SupporterCounts, Option<Stop>) {
-        let [.., least] = LEAST_COSINES;
+        let [.., least] = MIN_SUPPORT_COSINES;
         let contact_points = self.normals.iter().filter(|normal| normal.dot(&self.up) >= least).count();
-        let mut apart = APART;
+        let mut apart = SUPPORT_SPACING;
         let contacts = loop {
             match self.spread(apart, slots) {
                 Some(count) => break count,
-                None => apart *= FARTHER,
+                None => apart *= SPACING_GROWTH,
             }
         };
         if let Err(stop) = meter.distance_queries(contacts) {
@@ -62,10 +52,10 @@ impl Search<'_> {
         (SupporterCounts { contact_points, contacts }, None)
     }
 
-    /// Contacts this far apart; `None` if they are more than `slots`.
+    /// Fills `slots` with contacts at least this far apart, and returns their number; `None` if there are more than `slots`.
     fn spread(&self, apart: f32, slots: &mut [SupportContact]) -> Option<usize> {
         let mut count = 0;
-        for least in LEAST_COSINES {
+        for least in MIN_SUPPORT_COSINES {
             let points = self.tree.points().iter().zip(self.normals);
             for (point, normal) in points.filter(|(_, normal)| normal.dot(&self.up) >= least) {
                 let is_near =
@@ -84,17 +74,15 @@ impl Search<'_> {
 
 /// The direction of greatest spread of the points around.
 fn bar_direction(tree: &PointTree, position: Point) -> Vector {
-    /// Metres: more than a bar is thick, less than it is long.
-    const RADIUS: f32 = 0.02;
     let (mut count, mut sum, mut squares) = (0.0, Vector::zeros(), nalgebra::Matrix3::<f32>::zeros());
-    tree.for_each_within(&position, RADIUS, |n| {
+    tree.for_each_within(&position, BAR_RADIUS, |n| {
         let offset = tree.points()[n.index as usize] - position;
         count += 1.0;
         sum += offset;
         squares += offset * offset.transpose();
     });
     let spread = squares / count - (sum / count) * (sum / count).transpose();
-    // Power iteration: the direction is a hint, not a measurement.
+    // Power iteration. Twenty rounds suffice for a direction that only orders candidates.
     let mut direction = Vector::new(1.0, 0.83, 0.61).normalize();
     for _ in 0..20 {
         let next = spread * direction;

@@ -1,4 +1,4 @@
-//! Which candidates come to rest, and how firmly.
+//! Releases poses under gravity: which of them come to rest, and how firmly. Serves any method.
 
 mod probability;
 mod rest;
@@ -15,28 +15,28 @@ use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
 
-/// What became of the poses that were let go.
+/// What became of the poses that were released.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SettlingCounts {
     /// Poses that were released.
     pub released: usize,
-    /// Of these, those that rotated off,
+    /// Released poses that rotated off the supporter.
     pub rotated_off: usize,
-    /// slid off or fell through,
+    /// Released poses that slid off, or fell through.
     pub slid_off: usize,
-    /// or still moved after three seconds.
+    /// Released poses that had not come to rest in time.
     pub moving: usize,
-    /// Those that came to rest.
+    /// Released poses that came to rest.
     pub at_rest: usize,
-    /// Of these, those that would not come off again.
+    /// Poses at rest that do not come free when gravity is reversed.
     pub wedged: usize,
-    /// Different rests that are probable enough to be given.
+    /// Distinct rest poses with a probability of at least [`Params::min_probability`].
     pub probable: usize,
-    /// Releases that came to one of them that needs no better ones beside it.
+    /// Releases that came to rest in a pose with a probability of 97.5 % or more.
     pub firm: usize,
 }
 
-/// Lets poses go, one at a time.
+/// Releases poses, one at a time.
 pub(super) struct Settling<'a> {
     pub(super) body: &'a Body<'a>,
     pub(super) support: &'a Support<'a>,
@@ -46,24 +46,33 @@ pub(super) struct Settling<'a> {
     pub(super) counts: SettlingCounts,
 }
 
-/// Distance of a candidate from the supporter, metres, below which it is not released.
-pub(super) const CLEARANCE: f32 = 0.0005;
-/// Tilts below this, radians, are not worth the time for the others.
-const WORTHLESS_TILT: f32 = 0.15;
-/// A release that comes closer to the supporter than this, metres, is as good as none: clouds are no more exact.
-const LEAST_GAP: f32 = 0.0001;
-/// What sinks by more than this, metres, from where it is let go to its rest, did not rest where it was let go.
-const MOST_SINKING: f32 = 0.01;
-/// So many places to let it go from are tried at most.
-const RELEASES: usize = 3;
+// Tolerances: a cloud is no more exact than these.
 
-/// Where to let the object go.
+/// Distance from the supporter below which a candidate is not released, metres: it may penetrate.
+pub(super) const CLEARANCE: f32 = 0.0005;
+/// Distance from the supporter below which a pose is no release pose, metres.
+const MIN_RELEASE_GAP: f32 = 0.0001;
+
+// Physics.
+
+/// Largest distance by which the centre of mass may sink from the release pose to the rest pose, metres. Farther down it is another
+/// place than the one that was chosen.
+const MAX_RELEASE_SINKING: f32 = 0.01;
+
+// Budget.
+
+/// Least tilt below which the other directions are not tested, radians: such a pose is never firm. Set by hand.
+const MIN_USEFUL_TILT: f32 = 0.15;
+/// Release poses tried for one rest pose.
+const MAX_RELEASES: usize = 3;
+
+/// A release pose.
 struct Release {
     /// Object to supporter.
     pose: Pose,
-    /// How far it is off the supporter there, metres.
+    /// Distance from the supporter, metres.
     gap: f32,
-    /// From there to the rest, metres.
+    /// How far the centre of mass sinks from there to the rest pose, metres.
     sinking: f32,
 }
 
@@ -83,7 +92,7 @@ impl<'a> Settling<'a> {
         array_bytes::<Sleep>(Support::sleepers(points))
     }
 
-    /// Lets each of `poses` go, moves those that stay to the front, the most probable first, and returns how many they are.
+    /// Releases each of `poses`, moves those that stay to the front, the most probable first, and returns their number.
     pub(super) fn sieve(
         &mut self,
         poses: &mut [HangingPose],
@@ -102,7 +111,7 @@ impl<'a> Settling<'a> {
         (left, Ok(()))
     }
 
-    /// Lets the object go, offers what is probable enough to `poses`, and returns whether it stays.
+    /// Releases the object, offers its rest pose to `poses` if it is probable enough, and returns whether it came to rest.
     pub(super) fn release(
         &mut self,
         start: &HangingPose,
@@ -110,7 +119,7 @@ impl<'a> Settling<'a> {
         meter: &mut Meter,
     ) -> Result<bool, Stop> {
         let scene = (self.body, self.support);
-        // What is finer than the field's voxels shows only here.
+        // Details finer than the distance field's voxels show only in this exact test.
         if !is_off_surface(scene, &start.pose, CLEARANCE, meter)? {
             return Ok(false);
         }
@@ -137,9 +146,9 @@ impl<'a> Settling<'a> {
             self.counts.wedged += 1;
             return Ok(false);
         }
-        // What cannot become better than the last of a full list need not be looked at to the end.
+        // A pose that cannot beat the last one of a full list need not be tilted in every direction.
         let last = poses.next_to_go().and_then(|pose| pose.rest).map_or(0.0, |rest| rest.probability);
-        let least = probability::least_tilt(last, gap).max(WORTHLESS_TILT);
+        let least = probability::least_tilt(last, gap).max(MIN_USEFUL_TILT);
         let firm = firmness(scene, &settled.pose, &down, friction, least, self.sleeps, meter)?;
         let rest = Rest::new(settled.pose, sinking, gap, &firm);
         if rest.probability >= self.params.min_probability && self.known(&rest.pose, poses).is_none() {
@@ -150,7 +159,7 @@ impl<'a> Settling<'a> {
         Ok(true)
     }
 
-    /// The rest among `poses` that is at `pose` as far as a robot cares.
+    /// The rest pose among `poses` that equals `pose` to within a robot's accuracy.
     fn known(&self, pose: &Pose, poses: &Best<HangingPose>) -> Option<Rest> {
         poses.iter().filter_map(|other| other.rest).find(|rest| rest.is_like(pose, &self.body.centre))
     }
@@ -160,8 +169,8 @@ impl<'a> Settling<'a> {
         settle((self.body, self.support), start, &-self.params.up(), settings, self.sleeps, meter)
     }
 
-    /// Where to let the object go, off the supporter but close to where it rests, and where it rests then. What does not come to rest close
-    /// by from there is not told to be let go there, but tried from where it comes to then.
+    /// A release pose off the supporter and close to a rest pose, and the rest pose that it leads to. The release is simulated again,
+    /// because it may lead elsewhere; if it does, the search goes on from there.
     fn find_release(
         &mut self,
         rests: Settled,
@@ -170,18 +179,18 @@ impl<'a> Settling<'a> {
         let scene = (self.body, self.support);
         let (up, clearance) = (self.params.up(), self.params.clearance);
         let mut settled = rests;
-        for _ in 0..RELEASES {
+        for _ in 0..MAX_RELEASES {
             if settled.fate != Fate::Rests {
                 break;
             }
             let (pose, gap) = release_pose(scene, &settled.pose, clearance, &up, self.sleeps, meter)?;
-            if gap < LEAST_GAP || !is_off_surface(scene, &pose, LEAST_GAP, meter)? {
+            if gap < MIN_RELEASE_GAP || !is_off_surface(scene, &pose, MIN_RELEASE_GAP, meter)? {
                 break;
             }
             settled = self.settle(&pose, meter)?;
             let centre = &self.body.centre;
             let sinking = up.dot(&(pose * centre - settled.pose * centre));
-            if settled.fate == Fate::Rests && sinking < MOST_SINKING {
+            if settled.fate == Fate::Rests && sinking < MAX_RELEASE_SINKING {
                 return Ok(Some((Release { pose, gap, sinking }, settled)));
             }
         }

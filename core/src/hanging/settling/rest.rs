@@ -9,14 +9,14 @@ use crate::mechanics::{Contact, Firmness, MAX_CONTACTS, Margin};
 pub struct Rest {
     /// Maps object coordinates to supporter coordinates; metres.
     pub pose: Pose,
-    /// How far the centre of mass sinks from the release to there, metres.
+    /// How far the centre of mass sinks from the release pose to the rest pose, metres.
     pub sinking: f32,
-    /// How far the object is off the supporter where it is let go, metres: [`Params::clearance`](crate::Params::clearance), or less
-    /// where there is no room.
+    /// Distance from the supporter at the release pose, metres: [`Params::clearance`](crate::Params::clearance), or less where
+    /// there is no room.
     pub clearance: f32,
-    /// The probability that it hangs and stays.
+    /// The probability that the object hangs and stays, 0 to 1.
     pub probability: f32,
-    /// By how much it stays.
+    /// How firmly the object stays.
     pub margin: Margin,
     contacts: [Contact; MAX_CONTACTS],
     contact_count: u32,
@@ -32,12 +32,12 @@ impl Rest {
         Self { pose, sinking, clearance, probability, margin: *margin, contacts, contact_count }
     }
 
-    /// Where the supporter bears the object at rest.
+    /// The contacts that carry the object at rest.
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts[..self.contact_count as usize]
     }
 
-    /// Whether another pose is the same, as far as a robot cares.
+    /// Whether another pose equals this rest pose to within a robot's accuracy: 5 mm at the centre of mass, and 0.1 rad.
     pub(super) fn is_like(&self, other: &Pose, centre: &Point) -> bool {
         let apart = self.pose * centre - other * centre;
         apart.norm() < 0.005 && self.pose.rotation.angle_to(&other.rotation) < 0.1
