@@ -1,5 +1,5 @@
-// Repeats in C, in the caller's memory, the predictions that ffi/examples/pairs.rs has made in Rust, and compares the
-// bits: ./pairs pair_*.bin
+// Repeats in C, in the caller's memory, the predictions that ffi/examples/pairs.rs has made in Rust, and
+// compares the bits: ./pairs pair_*.bin
 #include <hangpose.h>
 #include <stddef.h>
 #include <stdio.h>
