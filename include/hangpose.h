@@ -106,9 +106,9 @@ typedef uint32_t hangpose_centre_of_mass;
 // Source of the candidate poses, one of HANGPOSE_CANDIDATES_*.
 typedef uint32_t hangpose_candidates;
 
-// The constants of the method, with the symbols of the paper. Fill in the struct with hangpose_params_init, then
-// change single fields. Every call that takes it checks each field against its range, which is given at the end of
-// the comment.
+// The constants of the method, with the symbols of the paper. Set the struct with hangpose_params_init, then
+// change single fields. Every call that takes it checks each field against its range, which stands at the end of
+// the comment of the field.
 typedef struct hangpose_params {
   // sizeof(hangpose_params), set by hangpose_params_init.
   uint32_t struct_size;

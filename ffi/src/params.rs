@@ -31,9 +31,9 @@ pub const HANGPOSE_CANDIDATES_SITES: hangpose_candidates = 0;
 /// Every contact candidate of the object on every contact candidate of the supporter.
 pub const HANGPOSE_CANDIDATES_CONTACTS: hangpose_candidates = 1;
 
-/// The constants of the method, with the symbols of the paper. Fill in the struct with hangpose_params_init, then
-/// change single fields. Every call that takes it checks each field against its range, which is given at the end of
-/// the comment.
+/// The constants of the method, with the symbols of the paper. Set the struct with hangpose_params_init, then
+/// change single fields. Every call that takes it checks each field against its range, which stands at the end of
+/// the comment of the field.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_params {

@@ -1,8 +1,9 @@
-//! The conversions from the core's types to the C structs, with a different value in every field.
+//! Tests the conversions from the core's types to the C structs with a different value in every field.
 
 use hangpose::geometry::{Point, Pose, Vector};
-use hangpose::hanging::{Cost, Counts, HangingPose, MatchingCounts, Prediction, SettlingCounts, SiteMatch};
-use hangpose::hanging::{Rejection, Rest, Stage};
+use hangpose::hanging::{
+    Cost, Counts, HangingPose, MatchingCounts, Prediction, Rejection, Rest, SettlingCounts, SiteMatch, Stage,
+};
 use hangpose::mechanics::{Contact, Margin};
 use hangpose::{Monitor, Params, Stop, Work, analyze_object, analyze_supporter, files, predict_poses};
 use hangpose_ffi::*;
@@ -61,7 +62,7 @@ fn every_number_of_a_pose_reaches_its_field() {
     };
     let pose = Pose::new(Vector::new(1.0, 2.0, 3.0), Vector::new(0.1, 0.2, 0.3));
     let rest_pose = Pose::new(Vector::new(4.0, 5.0, 6.0), Vector::new(0.4, 0.5, 0.6));
-    // A rest can only be had from a prediction, because its contacts are private.
+    // The contacts of a rest are private, so they come from a prediction.
     let mut rest = a_rest();
     (rest.pose, rest.margin) = (rest_pose, margin);
     (rest.sinking, rest.clearance, rest.probability) = (0.31, 0.32, 0.33);
