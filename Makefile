@@ -2,19 +2,19 @@
 .PHONY: help setup demo test bench tables calibrate peer lib install deb samples header clean
 
 help:
-	@echo "make demo     hang the sample mug on the sample hook, let go and draw it"
-	@echo "make test     everything that must hold"
-	@echo "make bench    how long it takes, in how much memory"
-	@echo "make peer     the same beside another implementation: PEER=peer.py [MESHES=folder]"
-	@echo "make tables   drop 600 pairs in two engines: docs/RESULTS.md [MESHES=folder adds real ones]"
-	@echo "make calibrate  fit the constants of docs/PROBABILITY.md anew"
-	@echo "make lib      libhangpose.a and libhangpose.so for C and C++: build/link"
-	@echo "make install  put them where compilers look: [PREFIX=/usr/local] [DESTDIR=...]"
-	@echo "make deb      the same as a Debian package: build/libhangpose-dev_*.deb"
-	@echo "make samples  write samples/ anew"
-	@echo "make header   write include/hangpose.h anew from ffi/"
-	@echo "make setup    install what is missing"
-	@echo "make clean    remove what was built"
+	@echo "make demo     predict how the sample mug hangs on the sample hook, simulate it and draw it"
+	@echo "make test     run all checks and tests"
+	@echo "make bench    measure time and memory"
+	@echo "make peer     compare time and poses with another implementation: PEER=peer.py [MESHES=folder]"
+	@echo "make tables   simulate 600 pairs in two engines and write docs/RESULTS.md [MESHES=folder adds real meshes]"
+	@echo "make calibrate  refit the constants of docs/PROBABILITY.md"
+	@echo "make lib      build libhangpose.a and libhangpose.so for C and C++ in build/link"
+	@echo "make install  install the libraries and headers: [PREFIX=/usr/local] [DESTDIR=...]"
+	@echo "make deb      build the Debian package build/libhangpose-dev_*.deb"
+	@echo "make samples  regenerate samples/"
+	@echo "make header   regenerate include/hangpose.h from ffi/"
+	@echo "make setup    install missing tools"
+	@echo "make clean    remove build products"
 
 setup:
 	@scripts/setup.sh
@@ -22,7 +22,7 @@ setup:
 demo: setup
 	@mkdir -p build
 	cargo run --release -p hangpose -- predict --object samples/mug.obj --supporter samples/hook.ply --json build/demo.json
-	@echo "the poses are in build/demo.json; this is what becomes of them in Bullet:"
+	@echo "The poses are in build/demo.json. Simulation of each pose in Bullet:"
 	cargo run --release -p host-tests --bin drop -- --object samples/mug.obj --supporter samples/hook.obj --poses build/demo.json --picture build/demo.png
 
 test: setup
@@ -73,13 +73,13 @@ header:
 PREFIX ?= /usr/local
 cargo_dir = $(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/link
 
-# Not `setup`: that is for those who test hangpose. This takes cargo, cmake and a C compiler.
+# Does not depend on `setup`, which installs the tools of the tests. Needs cargo, cmake and a C compiler.
 lib:
-	@for tool in cargo cmake cc; do command -v $$tool >/dev/null || { echo "make lib needs $$tool" >&2; exit 1; }; done
+	@for tool in cargo cmake cc; do command -v $$tool >/dev/null || { echo "make lib: $$tool was not found: install it" >&2; exit 1; }; done
 	cmake -S . -B build/link -DCMAKE_INSTALL_PREFIX=$(PREFIX) -DHANGPOSE_CARGO_DIR=$(cargo_dir)
 	cmake --build build/link
 
-# Builds nothing that is there, so that it may be run by another user: make lib && sudo make install.
+# Builds only if the library is missing, so that another user can run it: make lib && sudo make install.
 install:
 	@test -e build/link/libhangpose.a || $(MAKE) lib
 	cmake --install build/link --prefix $(PREFIX)

@@ -1,4 +1,4 @@
-// Hangs the mesh in one file on the mesh in another: ./02_mesh_file mug.obj hook.obj
+// Predicts how the mesh in one file hangs on the mesh in another: ./02_mesh_file mug.obj hook.obj
 #include <cstdio>
 #include <hangpose.hpp>
 #include <vector>
@@ -21,7 +21,7 @@ int main(int count, char **arguments) {
   const auto object = hangpose::object::create({mug.vertices, mug.triangles}, params);
   if (!object) return fail(object.error());
 
-  // A supporter is a point cloud: a camera's, or as here points drawn from a mesh.
+  // A supporter is a point cloud, from a camera or, as here, sampled from a mesh.
   std::vector<hangpose::vec3> points(10000), normals(10000);
   if (auto drawn = hangpose::sample({hook.vertices, hook.triangles}, points, normals); !drawn)
     return fail(drawn.error());
@@ -38,9 +38,9 @@ int main(int count, char **arguments) {
   for (const hangpose::pose &pose : found->poses) {
     const auto &p = pose.position;
     const auto &q = pose.quaternion;
-    std::printf("let go at (%.4f, %.4f, %.4f) m, turned by (%.4f, %.4f, %.4f, %.4f) xyzw: ", p[0], p[1], p[2],
-                q[0], q[1], q[2], q[3]);
-    std::printf("hangs with probability %.2f, up to a tilt of %.2f rad, on", pose.probability,
+    std::printf("release at (%.4f, %.4f, %.4f) m, quaternion (%.4f, %.4f, %.4f, %.4f) xyzw: ", p[0], p[1],
+                p[2], q[0], q[1], q[2], q[3]);
+    std::printf("hangs with probability %.2f, up to a tilt of %.2f rad, contacts", pose.probability,
                 pose.margin.least_tilt);
     for (const auto &contact : hangpose::contacts(pose)) {
       std::printf(" (%.4f, %.4f, %.4f)", contact.position[0], contact.position[1], contact.position[2]);

@@ -1,5 +1,5 @@
-// One supporter, many objects, two threads: the supporter is analysed once and shared; each thread has its
-// own memory.
+// One supporter, many objects, two threads: both threads share one analysed supporter, and each has its own
+// memory.
 #include <atomic>
 #include <cstdio>
 #include <hangpose.hpp>
@@ -16,7 +16,7 @@ struct Answer {
   hangpose::pose best{};
 };
 
-// Takes object after object until there is none left.
+// Analyses and hangs the next object until none is left.
 static void work(const hangpose::supporter &peg, const hangpose::params &params, std::atomic<int> &next,
                  Answer *answers) {
   std::vector<hangpose::vec3> vertices(RING_VERTICES);
@@ -28,7 +28,7 @@ static void work(const hangpose::supporter &peg, const hangpose::params &params,
     answer.radius = 0.006f + 0.004f * static_cast<float>(index);
     make_ring(answer.radius, reinterpret_cast<float(*)[3]>(vertices.data()),
               reinterpret_cast<std::uint32_t(*)[3]>(triangles.data()));
-    // The memory is the caller's and is used again for the next object.
+    // The caller owns the memory and reuses it for the next object.
     const auto ring =
         hangpose::object::create({vertices, triangles}, params, hangpose::memory(room.data(), room.size()));
     if (!ring) {

@@ -1,6 +1,6 @@
-// A control loop at 1 kHz, with the prediction in a thread of low priority: the loop reads the progress,
-// cancels a prediction whose supporter has moved, starts it anew, and takes the pose when it is there. It
-// never waits.
+// A control loop at 1 kHz, with the prediction in a low-priority thread. The loop reads the progress, cancels
+// a prediction whose supporter has moved, restarts it, and takes the pose when it is ready. It never waits
+// for the prediction.
 #include <atomic>
 #include <chrono>
 #include <cstdio>
@@ -14,7 +14,7 @@
 
 #include "shapes.h"
 
-// What loop and predictor share. `state` hands the rest from one to the other.
+// The data that the loop and the predictor share. `state` hands the other fields from one to the other.
 struct Shared {
   enum State { IDLE, ASKED, ANSWERED, OVER };
   std::atomic<State> state{IDLE};
@@ -23,10 +23,10 @@ struct Shared {
   hangpose_status status = HANGPOSE_OK;
 };
 
-// A controller with a real-time kernel would give the loop a real-time priority instead.
+// On a real-time kernel a controller would raise the priority of the loop instead.
 static void be_less_important() {
 #ifdef __linux__
-  if (nice(10) == -1) std::perror("nice");  // on Linux, of this thread only
+  if (nice(10) == -1) std::perror("nice");  // on Linux for this thread only
 #endif
 }
 
@@ -46,7 +46,7 @@ static void predictor(Shared &shared) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       continue;
     }
-    // Every call looks at the monitor, so that a cancel is answered from each.
+    // Every call takes the monitor, so each of them can be cancelled.
     const auto ring = hangpose::object::create({vertices, triangles}, params, &shared.monitor);
     const auto peg = hangpose::supporter::create({points, normals}, params, &shared.monitor);
     shared.status = !ring ? ring.error().status() : !peg ? peg.error().status() : HANGPOSE_OK;
@@ -74,9 +74,9 @@ int main() {
     if (latest - next > late) late = latest - next;
     // ... here a controller reads its encoders and commands its motors ...
 
-    // Once the first prediction is under way, someone moves the peg.
+    // The peg moves while the first prediction is running.
     if (cancelled == 0 && shared.monitor.progress() > 0.0f) {
-      std::printf("tick %d: the peg has moved, at %.0f %%\n", ticks,
+      std::printf("tick %d: the peg has moved, prediction cancelled at %.0f %%\n", ticks,
                   static_cast<double>(shared.monitor.progress()) * 100);
       shared.monitor.cancel();
       cancelled = 1;
@@ -84,7 +84,7 @@ int main() {
     if (shared.state.load(std::memory_order_acquire) != Shared::ANSWERED) continue;
     std::printf("tick %d: %s\n", ticks, hangpose_status_string(shared.status));
     if (shared.status != HANGPOSE_CANCELLED) break;
-    shared.monitor.reset();  // nothing runs with it now
+    shared.monitor.reset();  // no call is using it
     shared.state.store(Shared::ASKED, std::memory_order_release);
   }
   shared.monitor.cancel();
@@ -93,9 +93,8 @@ int main() {
   thread.join();
   const auto &p = shared.best.position;
   std::printf(
-      "%d ticks, the latest %.3f ms late; let go at (%.4f, %.4f, %.4f) m, which hangs with probability "
-      "%.2f\n",
-      ticks, std::chrono::duration<double, std::milli>(late).count(), static_cast<double>(p[0]),
+      "%d ticks, at most %.3f ms late; release at (%.4f, %.4f, %.4f) m, hangs with probability %.2f\n", ticks,
+      std::chrono::duration<double, std::milli>(late).count(), static_cast<double>(p[0]),
       static_cast<double>(p[1]), static_cast<double>(p[2]), static_cast<double>(shared.best.probability));
   return is_done ? 0 : 1;
 }

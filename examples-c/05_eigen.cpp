@@ -1,4 +1,4 @@
-// Eigen on both sides: points in the columns of a matrix go in, an isometry comes out. Eigen comes first.
+// Eigen for input and output: points in the columns of a matrix, poses as isometries. Include Eigen first.
 #include <Eigen/Geometry>
 #include <cstdio>
 #include <hangpose.hpp>
@@ -34,7 +34,7 @@ int main() {
   const auto info = ring->info();
   const Eigen::Map<const Eigen::Vector3f> centre_of_mass(info->centre_of_mass);
   const Eigen::Vector3f before = release * centre_of_mass, after = rest * centre_of_mass;
-  std::printf("let go, the ring's centre of mass sinks %.1f mm, to %.1f mm below the peg's axis\n",
+  std::printf("released, the ring's centre of mass sinks %.1f mm, to %.1f mm below the axis of the peg\n",
               1000.0 * static_cast<double>(before.z() - after.z()), -1000.0 * static_cast<double>(after.z()));
   return after.z() < 0 ? 0 : 1;
 }

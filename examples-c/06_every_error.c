@@ -1,4 +1,4 @@
-// Every answer that is not a pose, on purpose: what the caller did wrong, and what the library says to it.
+// Provokes every status: prints what the caller did, and the diagnosis of the library.
 #include <hangpose.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -33,7 +33,7 @@ static void expect(hangpose_status wanted, hangpose_status status, const char *w
     if (detail.index != HANGPOSE_NO_INDEX) printf("[%u]", (unsigned)detail.index);
     printf(" | %s", detail.message);
   }
-  printf("%s\n", status == wanted ? "" : "    <- NOT WHAT WAS EXPECTED");
+  printf("%s\n", status == wanted ? "" : "    <- UNEXPECTED");
   surprises += status != wanted;
 }
 
@@ -58,7 +58,7 @@ static hangpose_status predict(const hangpose_supporter *on, unsigned char *memo
                           said);
 }
 
-// Predicts again and again, so that the supporter is in use.
+// Predicts in a loop, so that the supporter is in use.
 static volatile hangpose_status last;
 static void *keep_busy(void *is_over) {
   while (!hangpose_monitor_is_cancelled(is_over)) last = predict(peg, other_work, POSES, NULL);
@@ -72,79 +72,76 @@ int main(void) {
   make_peg(0.004f, points, normals);
 
   expect(HANGPOSE_ERROR_ABI_VERSION, init(&params, HANGPOSE_PROFILE_DEFAULT, 999),
-         "the header of another library");
-  expect(HANGPOSE_ERROR_NULL, init(NULL, HANGPOSE_PROFILE_DEFAULT, HANGPOSE_ABI_VERSION),
-         "params that are not there");
+         "a header of another version");
+  expect(HANGPOSE_ERROR_NULL, init(NULL, HANGPOSE_PROFILE_DEFAULT, HANGPOSE_ABI_VERSION), "params are null");
   expect(HANGPOSE_ERROR_VALUE, init(&params, 77, HANGPOSE_ABI_VERSION), "a profile that does not exist");
-  expect(HANGPOSE_OK, init(&params, HANGPOSE_PROFILE_DEFAULT, HANGPOSE_ABI_VERSION),
-         "params as they should be");
+  expect(HANGPOSE_OK, init(&params, HANGPOSE_PROFILE_DEFAULT, HANGPOSE_ABI_VERSION), "valid params");
   params.samples = SAMPLES;
   params.voxels = VOXELS;
 
   changed = params;
   changed.radius_ratio = NAN;
-  expect(HANGPOSE_ERROR_VALUE, make_object(sizeof object_memory, &mesh, &changed, NULL),
-         "a constant that is not a number");
+  expect(HANGPOSE_ERROR_VALUE, make_object(sizeof object_memory, &mesh, &changed, NULL), "a constant is NaN");
   changed.struct_size = 0;
   expect(HANGPOSE_ERROR_STRUCT_SIZE, make_object(sizeof object_memory, &mesh, &changed, NULL),
-         "params that were never set");
+         "params were never initialised");
   expect(HANGPOSE_ERROR_MEMORY, make_object(1000, &mesh, &params, NULL), "too little memory");
   hangpose_mesh broken = mesh;
   broken.vertices = (const float *)((const char *)*vertices + 1);
   expect(HANGPOSE_ERROR_MISALIGNED, make_object(sizeof object_memory, &broken, &params, NULL),
-         "floats at an odd address");
+         "a float array at an odd address");
   broken.vertices = (const float *)(void *)object_memory;
   expect(HANGPOSE_ERROR_OVERLAP, make_object(sizeof object_memory, &broken, &params, NULL),
-         "a mesh inside the memory");
+         "a mesh that overlaps the memory");
   broken = mesh;
   broken.triangle_count = 0;
   expect(HANGPOSE_ERROR_COUNT, make_object(sizeof object_memory, &broken, &params, NULL),
          "a mesh without triangles");
   triangles[7][1] = RING_VERTICES;
   expect(HANGPOSE_ERROR_INDEX, make_object(sizeof object_memory, &mesh, &params, NULL),
-         "a vertex that does not exist");
+         "a triangle with a vertex index out of range");
   triangles[7][1] = 0;
   vertices[5][2] = NAN;
   expect(HANGPOSE_ERROR_VALUE, make_object(sizeof object_memory, &mesh, &params, NULL),
-         "a coordinate that is not a number");
+         "a coordinate is NaN");
   static const uint32_t line[3] = {0, 1, 1};
   broken.triangle_count = 1;
   broken.triangles = line;
   make_ring(0.03f, vertices, triangles);
   expect(HANGPOSE_ERROR_DEGENERATE, make_object(sizeof object_memory, &broken, &params, NULL),
-         "a triangle without area");
+         "all triangles have zero area");
   memset(&monitor, 0, sizeof monitor);
   expect(HANGPOSE_ERROR_HANDLE, make_object(sizeof object_memory, &mesh, &params, &monitor),
-         "a monitor that was never set");
+         "a monitor that was never initialised");
   hangpose_monitor_init(&monitor, sizeof monitor, HANGPOSE_NO_WORK_LIMIT, &detail);
   hangpose_monitor_cancel(&monitor);
   expect(HANGPOSE_CANCELLED, make_object(sizeof object_memory, &mesh, &params, &monitor),
-         "cancelled before it began");
+         "an analysis cancelled before it began");
   expect(HANGPOSE_OK,
          hangpose_object_create(object_memory, sizeof object_memory, &mesh, &params, NULL, &ring, &detail),
-         "an object as it should be");
+         "a valid object");
   expect(HANGPOSE_ERROR_INDEX, hangpose_object_get_contact(ring, 1000, &contact, &detail),
-         "a contact that does not exist");
+         "a contact index out of range");
 
   expect(HANGPOSE_OK,
          hangpose_supporter_create(supporter_memory, sizeof supporter_memory, &cloud, &params, NULL, &peg,
                                    &detail),
-         "a supporter as it should be");
+         "a valid supporter");
   expect(HANGPOSE_ERROR_HANDLE, predict((hangpose_supporter *)(void *)points, work, POSES, NULL),
-         "no supporter at all");
-  expect(HANGPOSE_ERROR_COUNT, predict(peg, work, 0, NULL), "no room for a pose");
+         "a pointer that is not a supporter");
+  expect(HANGPOSE_ERROR_COUNT, predict(peg, work, 0, NULL), "a pose array of length 0");
   hangpose_monitor_init(&monitor, sizeof monitor, 10, &detail);
-  expect(HANGPOSE_WORK_LIMIT, predict(peg, work, POSES, &monitor), "ten queries, and no more");
+  expect(HANGPOSE_WORK_LIMIT, predict(peg, work, POSES, &monitor), "a work limit of ten queries");
   for (int i = 0; i < PEG_POINTS; ++i) {
     points[i][0] = normals[i][1] = normals[i][2] = 0.0f;
     normals[i][0] = 1.0f;
   }
   make_other(&cloud);
-  expect(HANGPOSE_REJECTED, predict(other, work, POSES, NULL), "a smooth wall");
+  expect(HANGPOSE_REJECTED, predict(other, work, POSES, NULL), "a supporter that is a smooth wall");
   hangpose_monitor_cancel(&monitor);
   expect(HANGPOSE_CANCELLED, hangpose_supporter_update(other, &cloud, &params, &monitor, &detail),
-         "an update that is cancelled");
-  expect(HANGPOSE_ERROR_EMPTY, predict(other, work, POSES, NULL), "the supporter after that");
+         "a cancelled update");
+  expect(HANGPOSE_ERROR_EMPTY, predict(other, work, POSES, NULL), "the supporter after the cancelled update");
 
   make_peg(0.004f, points, normals);
   pthread_t thread;
@@ -156,13 +153,13 @@ int main(void) {
   expect(HANGPOSE_ERROR_BUSY, status, "an update while another thread predicts");
   hangpose_monitor_cancel(&monitor);
   pthread_join(thread, NULL);
-  expect(HANGPOSE_OK, predict(peg, work, POSES, NULL), "a prediction as it should be");
+  expect(HANGPOSE_OK, predict(peg, work, POSES, NULL), "a valid prediction");
 
   init(&changed, HANGPOSE_PROFILE_PAPER, HANGPOSE_ABI_VERSION);
   changed.samples = SAMPLES;
   hangpose_object_create(object_memory, sizeof object_memory, &mesh, &changed, NULL, &ring, &detail);
   expect(HANGPOSE_ERROR_NO_DISTANCE_FIELD, predict(peg, work, POSES, NULL),
-         "an object that was analysed with other params");
-  printf("%d of these were not as expected\n", surprises);
+         "an object that was analysed without voxels");
+  printf("%d unexpected results\n", surprises);
   return surprises;
 }

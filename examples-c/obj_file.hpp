@@ -1,4 +1,4 @@
-// Just enough of OBJ for the examples: v, and f with any number of corners.
+// A minimal OBJ reader for the examples: `v`, and `f` with any number of corners.
 #ifndef OBJ_FILE_HPP
 #define OBJ_FILE_HPP
 
@@ -27,7 +27,7 @@ struct ObjFile {
       for (std::size_t i = 2; i < corners.size(); ++i)
         triangles.push_back({corners[0], corners[i - 1], corners[i]});
     }
-    if (triangles.empty()) std::fprintf(stderr, "%s: there are no triangles in this file\n", path);
+    if (triangles.empty()) std::fprintf(stderr, "%s: cannot read this file, or it has no triangles\n", path);
   }
 };
 

@@ -1,4 +1,4 @@
-// A ring to hang and a peg to hang it on, for the examples that read no files.
+// A ring and a peg for the examples that read no files.
 #ifndef SHAPES_H
 #define SHAPES_H
 
@@ -15,7 +15,8 @@ enum { PEG_ROWS = 80, PEG_COLUMNS = 30, PEG_POINTS = PEG_ROWS * PEG_COLUMNS };
 
 static inline float turn(uint32_t step, uint32_t steps) { return 6.2831853f * (float)step / (float)steps; }
 
-// A ring around z, 6 mm thick, of `radius` metres: RING_VERTICES rows and RING_TRIANGLES rows.
+// A ring around the z axis, 6 mm thick; `radius` of its centre line in metres. Writes RING_VERTICES rows and
+// RING_TRIANGLES rows.
 static inline void make_ring(float radius, float (*vertices)[3], uint32_t (*triangles)[3]) {
   for (uint32_t row = 0; row < RING_ROWS; ++row) {
     for (uint32_t column = 0; column < RING_COLUMNS; ++column, ++vertices, triangles += 2) {
@@ -33,7 +34,7 @@ static inline void make_ring(float radius, float (*vertices)[3], uint32_t (*tria
   }
 }
 
-// A peg along y, 8 cm long, of `radius` metres: PEG_POINTS rows of points and of normals.
+// A peg along the y axis, 8 cm long; `radius` in metres. Writes PEG_POINTS rows of points and of normals.
 static inline void make_peg(float radius, float (*points)[3], float (*normals)[3]) {
   for (uint32_t row = 0; row < PEG_ROWS; ++row) {
     for (uint32_t column = 0; column < PEG_COLUMNS; ++column, ++points, ++normals) {

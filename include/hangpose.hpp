@@ -1,6 +1,7 @@
-// hangpose for C++17 and later: what is in hangpose.h, with memory that looks after itself and results that
-// cannot be overlooked. Header-only; throws nothing, needs neither exceptions nor RTTI. Where Eigen's
-// Geometry is included before this header, poses and points convert to and from it.
+// hangpose for C++17 and later: the functions of hangpose.h with RAII memory and [[nodiscard]] results.
+// Header-only; throws nothing and needs neither exceptions nor RTTI. If Eigen/Geometry is included before
+// this header, poses convert to Eigen and points from it. Units, frames and thread safety are those of
+// hangpose.h.
 //
 //   hangpose::params params;                                       // or hangpose::params::paper()
 //   auto object = hangpose::object::create({vertices, triangles}, params);
@@ -21,7 +22,7 @@
 
 namespace hangpose {
 
-// A point, a direction, or a row of three indices: what arrays are made of.
+// A row of an array: x, y, z of a point or direction, or three vertex indices.
 using vec3 = std::array<float, 3>;
 using triangle = std::array<std::uint32_t, 3>;
 
@@ -34,33 +35,34 @@ using supporter_info = hangpose_supporter_info;
 using supporter_site = hangpose_supporter_site;
 using supporter_contact = hangpose_supporter_contact;
 
-// The constants of the method: fields of hangpose_params.
+// The constants of the method: the fields of hangpose_params, set to the defaults of a profile.
 struct params : hangpose_params {
   params() noexcept : params(HANGPOSE_PROFILE_DEFAULT) {}
   static params paper() noexcept { return params(HANGPOSE_PROFILE_PAPER); }
 
  private:
-  // If the library is another than the header, struct_size stays 0, and the first call that takes this says
-  // why.
+  // If the header and the library have different versions, struct_size stays 0, and the first call that takes
+  // the params reports the mismatch.
   explicit params(hangpose_profile profile) noexcept : hangpose_params() {
     hangpose_params_init(this, sizeof(hangpose_params), profile, HANGPOSE_ABI_VERSION, nullptr);
   }
 };
 
-// Lets another thread see how far a call is and stop it, and bounds its work. Stays where it is.
+// Lets other threads read the progress of a call and cancel it, and limits the work of each call. Neither
+// copied nor moved. All functions but reset may be called from any thread at any time.
 class monitor {
  public:
   explicit monitor(std::uint64_t work_limit = HANGPOSE_NO_WORK_LIMIT) noexcept { reset(work_limit); }
   monitor(const monitor &) = delete;
   monitor &operator=(const monitor &) = delete;
 
-  // Ready for the next call; none may run with it.
+  // Resets progress and cancellation for the next call. No call may be using the monitor.
   void reset(std::uint64_t work_limit = HANGPOSE_NO_WORK_LIMIT) noexcept {
     hangpose_monitor_init(&monitor_, sizeof monitor_, work_limit, nullptr);
   }
   void cancel() noexcept { hangpose_monitor_cancel(&monitor_); }
   bool is_cancelled() const noexcept { return hangpose_monitor_is_cancelled(&monitor_) != 0; }
-  // From 0 to 1.
+  // Progress of the current call, from 0 to 1.
   float progress() const noexcept { return hangpose_monitor_progress(&monitor_); }
 
   hangpose_monitor *get() noexcept { return &monitor_; }
@@ -72,22 +74,22 @@ class monitor {
 namespace internal {
 
 inline std::uint32_t count(std::size_t size) noexcept {
-  // What does not fit is more than there may be, and the call says so.
+  // A count that does not fit is above the maximum, so the call reports it.
   return size < UINT32_MAX ? static_cast<std::uint32_t>(size) : UINT32_MAX;
 }
 
-// The first number of rows that lie dense, or null where there are none.
+// The first number of dense rows, or null if there are none.
 template <class T, std::size_t N>
 auto numbers(view<std::array<T, N>> rows) noexcept {
   return rows.empty() ? nullptr : rows.data()->data();
 }
 template <class T, std::size_t N>
 auto numbers(view<const std::array<T, N>> rows) noexcept {
-  static_assert(sizeof(std::array<T, N>) == N * sizeof(T), "rows lie dense");
+  static_assert(sizeof(std::array<T, N>) == N * sizeof(T), "rows are dense");
   return rows.empty() ? nullptr : rows.data()->data();
 }
 
-// A struct that a call fills in.
+// Calls `call` with a struct to fill in and returns the struct or the error.
 template <class T, class Call>
 result<T> filled(Call &&call) noexcept {
   T out{};
@@ -97,7 +99,7 @@ result<T> filled(Call &&call) noexcept {
   return out;
 }
 
-// A handle is not freed, it goes with its memory.
+// A deleter that does nothing: a model needs no free, it ends with its memory.
 struct leave {
   template <class T>
   void operator()(T *) const noexcept {}
@@ -107,7 +109,7 @@ using handle = std::unique_ptr<T, leave>;
 
 inline hangpose_monitor *get(monitor *watch) noexcept { return watch == nullptr ? nullptr : watch->get(); }
 
-// hangpose_limits_of, and that header and library are of one version.
+// hangpose_limits_of, after a check that header and library have the same version.
 inline result<limits> limits_of(const hangpose_params &params, const hangpose_mesh *mesh,
                                 const hangpose_cloud *cloud) noexcept {
   error why;
@@ -121,12 +123,13 @@ inline result<limits> limits_of(const hangpose_params &params, const hangpose_me
 }
 
 inline error no_memory() noexcept {
-  return error::of(HANGPOSE_ERROR_MEMORY, "memory", "the heap has not enough memory left");
+  return error::of(HANGPOSE_ERROR_MEMORY, "memory",
+                   "the heap has too little memory left: free some, or pass static memory");
 }
 
 }  // namespace internal
 
-// A triangle mesh of someone else's.
+// A triangle mesh in the caller's arrays, which must outlive it.
 struct mesh : hangpose_mesh {
   mesh(view<const vec3> vertex_rows, view<const triangle> triangle_rows) noexcept : hangpose_mesh() {
     struct_size = sizeof(hangpose_mesh);
@@ -137,7 +140,8 @@ struct mesh : hangpose_mesh {
   }
 };
 
-// A point cloud of someone else's. Normals, if there are any, one for each point, or else there are none.
+// A point cloud in the caller's arrays, which must outlive it: points, one normal for each point or none, and
+// the sensor position or null.
 struct cloud : hangpose_cloud {
   cloud(view<const vec3> point_rows, view<const vec3> normal_rows = {},
         const vec3 *seen_from = nullptr) noexcept
@@ -148,20 +152,21 @@ struct cloud : hangpose_cloud {
     normals = internal::numbers(normal_rows);
     viewpoint = seen_from == nullptr ? nullptr : seen_from->data();
   }
-  // The first thing that C cannot see.
+  // Checks the number of normals, which the C interface cannot see.
   result<done> check() const noexcept {
     if (normal_count == 0 || normal_count == point_count) return done{};
-    return error::of(HANGPOSE_ERROR_COUNT, "cloud.normals",
-                     "there is not one normal for each point: give as many normals as points, or none");
+    return error::of(
+        HANGPOSE_ERROR_COUNT, "cloud.normals",
+        "the number of normals differs from the number of points: pass one normal for each point, or none");
   }
 
   std::uint32_t normal_count;
 };
 
-// An object, analysed. Any number of threads may use it at once.
+// An analysed object. Any number of threads may use it at the same time.
 class object {
  public:
-  // In its own memory from the heap.
+  // Analyses `mesh` in memory from the heap, which the object owns.
   static result<object> create(const mesh &mesh, const params &params, monitor *watch = nullptr) noexcept {
     auto within = internal::limits_of(params, &mesh, nullptr);
     if (!within) return within.error();
@@ -169,7 +174,7 @@ class object {
     if (own.data() == nullptr) return internal::no_memory();
     return create(mesh, params, std::move(own), watch);
   }
-  // In memory of hangpose_object_bytes, or HANGPOSE_OBJECT_BYTES.
+  // Analyses `mesh` in `room`, which has at least hangpose_object_bytes or HANGPOSE_OBJECT_BYTES.
   static result<object> create(const mesh &mesh, const params &params, memory room,
                                monitor *watch = nullptr) noexcept {
     auto within = internal::limits_of(params, &mesh, nullptr);
@@ -189,12 +194,12 @@ class object {
     return internal::filled<object_info>(
         [&](auto *out, auto *why) { return hangpose_object_get_info(get(), out, why); });
   }
-  // Below info()->sites, the best encircled first.
+  // Hanging site `index`, less than info()->sites; site 0 is encircled best.
   result<object_site> site(std::uint32_t index) const noexcept {
     return internal::filled<object_site>(
         [&](auto *out, auto *why) { return hangpose_object_get_site(get(), index, out, why); });
   }
-  // Below info()->contacts, the one that catches best first.
+  // Contact candidate `index`, less than info()->contacts; candidate 0 has the greatest capture.
   result<object_contact> contact(std::uint32_t index) const noexcept {
     return internal::filled<object_contact>(
         [&](auto *out, auto *why) { return hangpose_object_get_contact(get(), index, out, why); });
@@ -207,10 +212,11 @@ class object {
   internal::handle<hangpose_object> handle_;
 };
 
-// A supporter, analysed. Any number of threads may use it at once, except while it is updated.
+// An analysed supporter. Any number of threads may use it at the same time, except during update.
 class supporter {
  public:
-  // In its own memory from the heap, with room for updates with up to `most_points` points.
+  // Analyses `cloud` in memory from the heap, which the supporter owns and which has room for updates of up
+  // to `most_points` points.
   static result<supporter> create(const cloud &cloud, const params &params, monitor *watch = nullptr,
                                   std::size_t most_points = 0) noexcept {
     auto within = internal::limits_of(params, nullptr, &cloud);
@@ -220,7 +226,7 @@ class supporter {
     if (own.data() == nullptr) return internal::no_memory();
     return create(cloud, params, std::move(own), watch);
   }
-  // In memory of hangpose_supporter_bytes, or HANGPOSE_SUPPORTER_BYTES.
+  // Analyses `cloud` in `room`, which has at least hangpose_supporter_bytes or HANGPOSE_SUPPORTER_BYTES.
   static result<supporter> create(const cloud &cloud, const params &params, memory room,
                                   monitor *watch = nullptr) noexcept {
     auto within = internal::limits_of(params, nullptr, &cloud);
@@ -237,8 +243,8 @@ class supporter {
     return made;
   }
 
-  // A new cloud in place of the old one, in the same memory. After an error the supporter is what it was;
-  // when it is cancelled it is empty until an update goes through.
+  // Replaces the cloud by a new one and analyses it in the same memory. After an error the supporter is
+  // unchanged; after HANGPOSE_CANCELLED it is empty until an update succeeds.
   result<done> update(const cloud &cloud, const params &params, monitor *watch = nullptr) noexcept {
     if (auto checked = cloud.check(); !checked) return checked.error();
     error why;
@@ -251,12 +257,12 @@ class supporter {
     return internal::filled<supporter_info>(
         [&](auto *out, auto *why) { return hangpose_supporter_get_info(get(), out, why); });
   }
-  // Below info()->sites, the thinnest first.
+  // Support site `index`, less than info()->sites; site 0 is the thinnest.
   result<supporter_site> site(std::uint32_t index) const noexcept {
     return internal::filled<supporter_site>(
         [&](auto *out, auto *why) { return hangpose_supporter_get_site(get(), index, out, why); });
   }
-  // Below info()->contacts.
+  // Contact candidate `index`, less than info()->contacts.
   result<supporter_contact> contact(std::uint32_t index) const noexcept {
     return internal::filled<supporter_contact>(
         [&](auto *out, auto *why) { return hangpose_supporter_get_contact(get(), index, out, why); });
@@ -269,25 +275,26 @@ class supporter {
   internal::handle<hangpose_supporter> handle_;
 };
 
-// Where the supporter bears the object at rest.
+// The contacts at which the supporter carries the object in the rest pose.
 inline view<const hangpose_contact> contacts(const pose &hanging) noexcept {
   return {hanging.contacts, hanging.contact_count};
 }
 
-// What predict found: poses, best first, or why there are none.
+// Result of predict: poses, best first, or the reason why there are none.
 class prediction : public hangpose_prediction {
  public:
   prediction() noexcept : hangpose_prediction() { struct_size = sizeof(hangpose_prediction); }
-  // HANGPOSE_OK, _REJECTED, _CANCELLED or _WORK_LIMIT.
+  // HANGPOSE_OK, HANGPOSE_REJECTED, HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT.
   hangpose_status status = HANGPOSE_OK;
-  // At the front of the poses that were handed in.
+  // The poses found, at the front of the caller's array.
   view<pose> poses;
-  // For people: why nothing hangs.
+  // A text for people: why the object hangs nowhere.
   const char *reason() const noexcept { return hangpose_stage_string(stage); }
 };
 
-// Finds poses in which the object hangs on the supporter, in memory of hangpose_predict_bytes, or
-// HANGPOSE_PREDICT_BYTES.
+// Finds poses in which the object hangs on the supporter and writes them to `poses`. `work` is working memory
+// of at least hangpose_predict_bytes or HANGPOSE_PREDICT_BYTES. Both models must have been analysed with
+// these params.
 inline result<prediction> predict(const object &object, const supporter &supporter, const params &params,
                                   view<pose> poses, const memory &work, monitor *watch = nullptr) noexcept {
   prediction found;
@@ -300,7 +307,7 @@ inline result<prediction> predict(const object &object, const supporter &support
   return found;
 }
 
-// The same in memory from the heap.
+// The same with working memory from the heap.
 inline result<prediction> predict(const object &object, const supporter &supporter, const params &params,
                                   view<pose> poses, monitor *watch = nullptr) noexcept {
   auto within = internal::limits_of(params, nullptr, nullptr);
@@ -314,12 +321,14 @@ inline result<prediction> predict(const object &object, const supporter &support
   return predict(object, supporter, params, poses, work, watch);
 }
 
-// Draws evenly spread points and their normals, as many as there is room for, from a supporter that is known
-// as a mesh.
+// Fills `points` and `normals`, arrays of the same length, with evenly spread samples of a mesh: the cloud of
+// a supporter whose mesh is known.
 inline result<done> sample(const mesh &mesh, view<vec3> points, view<vec3> normals,
                            std::uint64_t seed = 0) noexcept {
   if (points.size() != normals.size()) {
-    return error::of(HANGPOSE_ERROR_COUNT, "normals", "there is not room for one normal for each point");
+    return error::of(
+        HANGPOSE_ERROR_COUNT, "normals",
+        "the number of normals differs from the number of points: pass arrays of the same length");
   }
   const auto count = internal::count(points.size());
   memory work = memory::own(hangpose_sample_bytes(count));
@@ -345,16 +354,16 @@ inline Eigen::Isometry3f motion(const float (&position)[3], const float (&quater
 
 }  // namespace internal
 
-// The motion from object to supporter coordinates, where the object is let go.
+// The release pose: maps object coordinates to supporter coordinates.
 inline Eigen::Isometry3f to_eigen(const pose &hanging) {
   return internal::motion(hanging.position, hanging.quaternion);
 }
-// The same where it comes to rest; NaN where it has no rest.
+// The rest pose; NaN if hangpose_pose.has_rest is 0.
 inline Eigen::Isometry3f rest_to_eigen(const pose &hanging) {
   return internal::motion(hanging.rest_position, hanging.rest_quaternion);
 }
 
-// Points, normals or triangles in the columns of a matrix, which must outlive the view.
+// A view of the points, normals or triangles in the columns of a matrix, which must outlive the view.
 inline view<const vec3> columns(const Eigen::Matrix<float, 3, Eigen::Dynamic> &matrix) noexcept {
   return {reinterpret_cast<const vec3 *>(matrix.data()), static_cast<std::size_t>(matrix.cols())};
 }

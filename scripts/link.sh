@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the C library, installs it, and links it from outside the tree in every way that the README promises: through
-# CMake and pkg-config, static and shared, with gcc and clang, as the Debian package, and taken in as source.
+# Builds and installs the C library and links it from outside the tree in every way that the README describes: through
+# CMake and pkg-config, static and shared, with gcc and clang, from the Debian package, and built from source.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 source "$root/scripts/archive.sh"
@@ -11,29 +11,29 @@ cd "$here"
 
 say() { echo "link: $*"; }
 fail() { echo "link: $*" >&2; exit 1; }
-# Runs quietly, and shows what was said only where it fails.
+# Runs a command and prints its output only if it fails.
 quiet() { "$@" >quiet.log 2>&1 || { cat quiet.log >&2; fail "failed: $*"; }; }
 
-# ---- build and install, with another prefix than the build's
+# ---- build and install, with a prefix other than that of the build
 cp -r "$root/examples-c" "$root/ffi/tests" "$root/samples" .
 quiet make -C "$root" lib install DESTDIR="$here/root" PREFIX=/opt/hangpose
 prefix=$here/root/opt/hangpose
 archive=$prefix/lib/libhangpose.a
 shared=$prefix/lib/libhangpose.so
 
-# ---- what is in them
+# ---- symbols of the archive and the shared library
 table=$(symbol_table "$archive")
 check_forbidden link "$(cut -d ' ' -f 2 <<<"$table" | sort -u)"
 needed=$(undefined_symbols "$table" | grep -vxE 'mem(cpy|move|set|cmp)|bcmp' || true)
-[ -z "$needed" ] || fail "the archive needs more than memcpy and its like:" $needed
+[ -z "$needed" ] || fail "the archive needs symbols other than memcpy, memmove, memset, memcmp and bcmp:" $needed
 visible=$(readelf --syms --wide "$archive" | awk '$5 != "LOCAL" && $7 != "UND" && $8 !~ /^hangpose_/ && NF == 8 { print $8 }' |
     grep -vx Name || true)
-[ -z "$visible" ] || fail "the archive shows more than hangpose_*:" $visible
-# Read-only once the program is loaded: .data.rel.ro. Anything else would be state.
+[ -z "$visible" ] || fail "the archive has global symbols other than hangpose_*:" $visible
+# .data.rel.ro is read-only after loading. Any other data section would be mutable state.
 mutable=$(size -A "$archive" | awk '$1 ~ /^\.(data|bss|tdata|tbss)/ && $1 !~ /^\.data\.rel\.ro/ && $2 > 0 { print $1, $2 }')
 [ -z "$mutable" ] || fail "the archive has mutable state:" $mutable
 readelf -d "$shared" | grep -q "SONAME.*\[libhangpose.so.[0-9]*\]" || fail "libhangpose.so has no SONAME"
-say "libhangpose.a has no allocator, no unwinding and no mutable state, and shows hangpose_* alone"
+say "libhangpose.a has no allocator, no unwinding, no mutable state, and no global symbols other than hangpose_*"
 
 # ---- the examples, through CMake
 examples=(01_static_memory "02_mesh_file samples/mug.obj samples/hook.obj" 03_two_threads 04_control_loop 05_eigen 06_every_error)
@@ -51,7 +51,7 @@ for compilers in "gcc g++" "clang clang++"; do
         quiet cmake --build "$dir" --parallel 2
         run_examples "$dir"
     done
-    say "every example through CMake with $cc, static and shared"
+    say "all examples run, built through CMake with $cc, static and shared"
 done
 readelf -d build-gcc-ON/01_static_memory | grep -q 'libhangpose.so' || fail "BUILD_SHARED_LIBS does not link libhangpose.so"
 
@@ -80,9 +80,9 @@ for cxx in g++ clang++; do
 done
 quiet gcc $flags examples-c/01_static_memory.c $libs -lm -o 01-shared
 quiet env LD_LIBRARY_PATH="$prefix/lib" ./01-shared
-say "hangpose.h as C99, C11, C17 and C++, hangpose.hpp as C++17 and 20, through pkg-config, static and shared"
+say "hangpose.h compiles as C99, C11, C17 and C++, hangpose.hpp as C++17 and C++20, through pkg-config, static and shared"
 
-# ---- callers that go wrong
+# ---- invalid callers
 caller="-std=gnu11 -g -O1 $flags -Iexamples-c tests/c/robustness.c $static_libs -lm -pthread"
 quiet gcc $caller -o robustness
 valgrind -q --error-exitcode=9 --fair-sched=yes ./robustness >valgrind.log 2>&1 &
@@ -94,31 +94,31 @@ quiet g++ -std=c++17 -g -fsanitize=address,undefined -fno-sanitize-recover=all $
     $static_libs -o wrapper
 quiet ./wrapper
 
-# ---- a header of another version: links, and is refused when it runs; and CMake does not even find it
+# ---- a header of another version links but is refused at run time; CMake does not find another version
 cp -r "$prefix/include" other-include
 sed -i 's/#define HANGPOSE_ABI_VERSION .*/#define HANGPOSE_ABI_VERSION 999/' other-include/hangpose.h
 quiet gcc -Iother-include examples-c/01_static_memory.c "$archive" -lm -o other-c
 quiet g++ -std=c++17 -Iother-include examples-c/02_mesh_file.cpp "$archive" -o other-cpp
 for program in ./other-c "./other-cpp samples/mug.obj samples/hook.obj"; do
-    if $program >other.log 2>&1; then fail "a header of another version was taken: $program"; fi
-    grep -q "compiled for version 999" other.log || fail "a header of another version was not named: $(cat other.log)"
+    if $program >other.log 2>&1; then fail "a header of another version was accepted: $program"; fi
+    grep -q "compiled for version 999" other.log || fail "the message does not name the other version: $(cat other.log)"
 done
 sed 's/find_package(hangpose 0.1 REQUIRED)/find_package(hangpose 99 REQUIRED)/' "$root/examples-c/CMakeLists.txt" \
     >examples-c/CMakeLists.txt
 if cmake -S examples-c -B build-other -DCMAKE_PREFIX_PATH="$prefix" >other.log 2>&1; then
-    fail "CMake takes version 0.1 for 99"
+    fail "find_package(hangpose 99) accepts version 0.1"
 fi
 cp "$root/examples-c/CMakeLists.txt" examples-c/
 say "a header of another version is refused: $(./other-c 2>&1 || true)"
 
-# ---- the same bits as Rust
+# ---- the C call, in C memory, gives the same bits as the Rust call
 mkdir pairs
 quiet cargo run --manifest-path "$root/Cargo.toml" -p hangpose-ffi --example pairs -- pairs
 quiet gcc -std=c11 -O2 $flags tests/c/pairs.c $static_libs -o compare
 quiet ./compare pairs/*.bin
 say "$(cat quiet.log)"
 
-# ---- beside another archive made by Rust, that has std; with sections that no one needs thrown out
+# ---- links beside another Rust archive that has std; and with --gc-sections
 cat >other.rs <<'RUST'
 #[unsafe(no_mangle)]
 pub extern "C" fn other(count: u32) -> u32 {
@@ -140,7 +140,7 @@ done
 quiet gcc -O2 -ffunction-sections -fdata-sections $flags examples-c/01_static_memory.c "$archive" -lm -Wl,--gc-sections -o small
 quiet ./small
 strip small
-say "links beside an archive of Rust's with std, and with --gc-sections"
+say "links beside a Rust archive that has std, and with --gc-sections"
 say "a stripped C program that predicts (01, static): $(stat -c %s small) bytes; code and constants of libhangpose.a:" \
     "$(size "$archive" | awk 'NR == 2 { print $1 + $2 }') bytes"
 
@@ -155,10 +155,10 @@ quiet env LD_LIBRARY_PATH="$here/$libdir" ./01-debian
 quiet cmake -S examples-c -B build-debian -DCMAKE_PREFIX_PATH="$here/debian/usr"
 quiet cmake --build build-debian --target 02_mesh_file
 quiet build-debian/02_mesh_file samples/mug.obj samples/hook.obj
-grep -q '<name>hangpose</name>' debian/usr/share/hangpose/package.xml || fail "there is no package.xml"
-say "$(basename "$package") links, $(dpkg-deb -f "$package" Depends)"
+grep -q '<name>hangpose</name>' debian/usr/share/hangpose/package.xml || fail "the Debian package has no package.xml"
+say "$(basename "$package") links; it depends on $(dpkg-deb -f "$package" Depends)"
 
-# ---- taken in as source
+# ---- built from source in another project
 cargo_dir=${CARGO_TARGET_DIR:-$root/target}/link
 for how in add_subdirectory FetchContent; do
     for is_shared in OFF ON; do
@@ -170,8 +170,8 @@ for how in add_subdirectory FetchContent; do
         quiet $dir/in_cpp samples/mug.obj samples/hook.obj
     done
 done
-say "as source through add_subdirectory and FetchContent, static and shared"
+say "builds from source through add_subdirectory and FetchContent, static and shared"
 
-wait "$background" || { cat valgrind.log >&2; fail "valgrind found something"; }
+wait "$background" || { cat valgrind.log >&2; fail "valgrind reported errors"; }
 background=
 say "robustness under valgrind: $(tail -1 valgrind.log)"

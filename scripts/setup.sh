@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what `make test` and `make demo` need and this machine lacks. Quick when nothing is missing.
+# Installs the missing tools of `make test` and `make demo`. Quick if nothing is missing.
 set -euo pipefail
 
 as_root() {
@@ -14,7 +14,7 @@ as_root() {
 
 apt() {
     if ! command -v apt-get >/dev/null || ! as_root true 2>/dev/null; then
-        echo "setup: please install: $*" >&2
+        echo "setup: cannot install packages here; please install: $*" >&2
         echo "setup: on Debian: apt-get update && apt-get install --no-install-recommends $*" >&2
         exit 1
     fi
@@ -26,12 +26,12 @@ missing=()
 # The linker for the host, and readelf and size for the archive.
 command -v cc >/dev/null || missing+=(gcc libc6-dev)
 command -v readelf >/dev/null || missing+=(binutils)
-# The physics engines that judge poses, and what compiles and finds them.
+# The physics engines that test the poses, and the tools that find and compile them.
 command -v c++ >/dev/null || missing+=(g++)
 command -v pkg-config >/dev/null || missing+=(pkg-config)
 pkg-config --exists bullet 2>/dev/null || missing+=(libbullet-dev)
 pkg-config --exists ode 2>/dev/null || missing+=(libode-dev)
-# What the C library is built and packaged with, and the callers that it is tried with.
+# The tools that build and package the C library, and the compilers and checkers of its tests.
 command -v cmake >/dev/null || missing+=(cmake)
 command -v make >/dev/null || missing+=(make)
 command -v clang++ >/dev/null || missing+=(clang)
@@ -47,12 +47,12 @@ if command -v rustup >/dev/null; then
     done
 fi
 if ! command -v cargo >/dev/null; then
-    echo "setup: Rust is missing (1.89 or later, with rustfmt and clippy)" >&2
+    echo "setup: cargo was not found: install Rust 1.89 or later with rustfmt and clippy (rustup.rs)" >&2
     exit 1
 fi
 
-# Bare metal: rustup's target where it is to be had, or else Debian's compiler with the source of `core`.
-# It lives in /usr/bin beside rustup's, which the PATH finds first.
+# Bare metal: rustup's target if it is available, else Debian's compiler with the source of `core`.
+# Debian's compiler is in /usr/bin; rustup's comes first in the PATH.
 target=thumbv7em-none-eabihf
 if ! { command -v rustup >/dev/null && rustup target list --installed | grep -qx "$target"; } &&
     ! { command -v rustup >/dev/null && rustup target add "$target" >/dev/null 2>&1; } &&

@@ -1,4 +1,4 @@
-//! A whole prediction on a microcontroller: static memory, no allocator, no unwinding.
+//! A complete prediction on a microcontroller: static memory, no allocator, no unwinding.
 #![no_std]
 
 use core::panic::PanicInfo;
@@ -8,7 +8,7 @@ use hangpose_core::hanging::{HangingPose, Object, Supporter, predict, predict_by
 use hangpose_core::memory::Limits;
 use hangpose_core::{Candidates, Monitor, Params};
 
-/// The largest inputs that this program takes.
+/// The largest inputs that this program accepts.
 const LIMITS: Limits =
     Limits { vertices: 1000, triangles: 2000, samples: 2000, voxels: 20_000, points: 2000 };
 const PARAMS: Params = Params {
@@ -27,12 +27,13 @@ static mut OBJECT: [u8; Object::bytes(&LIMITS)] = [0; Object::bytes(&LIMITS)];
 static mut SUPPORTER: [u8; Supporter::bytes(&LIMITS)] = [0; Supporter::bytes(&LIMITS)];
 static mut WORKING: [u8; predict_bytes(&LIMITS)] = [0; predict_bytes(&LIMITS)];
 
-/// Writes the position of the best pose of a mesh on a cloud to `position` and returns how many poses there are,
-/// or -1 if an input is broken or larger than this program takes.
+/// Writes the release position of the best pose of a mesh on a cloud to `position`: x, y, z, metres, in the coordinates
+/// of the cloud. Returns the number of poses, or -1 if an input is invalid or larger than `LIMITS`, or if another call
+/// is running.
 ///
 /// # Safety
 ///
-/// The pointers lead to as many elements as the counts say, and `position` to three floats.
+/// Each array pointer leads to as many elements as its count says, and `position` leads to three floats.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_demo(
     vertices: *const [f32; 3],
@@ -46,7 +47,7 @@ pub unsafe extern "C" fn hangpose_demo(
     if IS_BUSY.swap(true, Ordering::Acquire) {
         return -1;
     }
-    // SAFETY: the caller vouches for the pointers, and no one else has the statics until IS_BUSY is cleared.
+    // SAFETY: the caller vouches for the pointers, and nobody else uses the statics until IS_BUSY is cleared.
     let (vertices, triangles, points, position, memory) = unsafe {
         (
             core::slice::from_raw_parts(vertices, vertex_count),
@@ -81,7 +82,7 @@ fn best(
     Some(prediction.poses.len())
 }
 
-/// Set when a panic has stopped the program, for the debugger to see.
+/// Set when a panic has stopped the program; visible in a debugger.
 #[unsafe(no_mangle)]
 pub static HANGPOSE_PANICKED: AtomicBool = AtomicBool::new(false);
 

@@ -1,5 +1,5 @@
-//! `cargo bench -p hangpose-ffi`: what a call through C takes over the same call in Rust, on the samples. Calls take
-//! turns, so that both meet the same machine, and the median of the ratios counts. Fails above 1 %.
+//! `cargo bench -p hangpose-ffi`: overhead of a call through the C interface relative to the same call in Rust, on the
+//! samples. The two calls alternate, so that both run under the same load. Fails if the median overhead is above 1 %.
 
 use hangpose::hanging::{HangingPose, Object, predict, predict_bytes};
 use hangpose::memory::Limits;
@@ -50,7 +50,7 @@ fn main() -> ExitCode {
     if is_little == [true; 2] { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// The same things as C holds them.
+/// The same inputs and models as C structs.
 struct C {
     params: hangpose_params,
     mesh: hangpose_mesh,
@@ -77,13 +77,13 @@ impl C {
             normals: normals.as_ptr().cast(),
             viewpoint: null_mut(),
         };
-        // SAFETY: plain numbers, and the calls set them.
+        // SAFETY: all fields are numbers, and the calls below set them.
         let mut params: hangpose_params = unsafe { std::mem::zeroed() };
         // SAFETY: as above.
         let mut limits: hangpose_limits = unsafe { std::mem::zeroed() };
         limits.struct_size = size_of::<hangpose_limits>() as u32;
         let mut supporter = null_mut();
-        // SAFETY: every pointer leads to what its type says; the memory stays with the models in `Self`.
+        // SAFETY: every pointer leads to a valid value of its type; the memory stays with the models in `Self`.
         let (sizes, memory) = unsafe {
             let size = size_of::<hangpose_params>();
             let profile = HANGPOSE_PROFILE_DEFAULT;
@@ -122,7 +122,7 @@ impl C {
     fn create(&self, memory: &mut [u8]) -> *mut hangpose_object {
         let mut object = null_mut();
         let (at, size) = (memory.as_mut_ptr().cast(), memory.len());
-        // SAFETY: every pointer leads to what its type says.
+        // SAFETY: every pointer leads to a valid value of its type.
         let status = unsafe {
             hangpose_object_create(at, size, &self.mesh, &self.params, null_mut(), &mut object, null_mut())
         };
@@ -135,7 +135,7 @@ impl C {
         let (mut poses, mut found): ([hangpose_pose; POSES], hangpose_prediction) =
             unsafe { std::mem::zeroed() };
         found.struct_size = size_of::<hangpose_prediction>() as u32;
-        // SAFETY: every pointer leads to what its type says, and the models are in `self`.
+        // SAFETY: every pointer leads to a valid value of its type, and the models are in `self`.
         let status = unsafe {
             hangpose_predict(
                 self.object,
@@ -156,7 +156,7 @@ impl C {
     }
 }
 
-/// Prints how much longer `c` takes than `rust`, and says whether that is little enough.
+/// Prints the overhead of `c` relative to `rust` and returns whether it is below `MOST`.
 fn overhead(name: &str, rust: &mut dyn FnMut(), c: &mut dyn FnMut()) -> bool {
     let time = |call: &mut dyn FnMut()| {
         let start = Instant::now();
@@ -166,7 +166,7 @@ fn overhead(name: &str, rust: &mut dyn FnMut(), c: &mut dyn FnMut()) -> bool {
     let mut ratios = Vec::new();
     let mut times = Vec::new();
     for round in 0..ROUNDS {
-        // Who comes second finds the caches warm, so they take turns in that too.
+        // The second call finds warm caches, so the order alternates too.
         let (in_rust, in_c) = if round % 2 == 0 {
             (time(rust), time(c))
         } else {

@@ -1,5 +1,5 @@
-# hangpose::hangpose for C and hangpose::cpp for C++. Both link the archive, or the shared library where
-# BUILD_SHARED_LIBS is on; hangpose::static and hangpose::shared are either.
+# Targets: hangpose::hangpose for C and hangpose::cpp for C++. Both link the static archive, or the shared library if
+# BUILD_SHARED_LIBS is on. hangpose::static and hangpose::shared select one explicitly.
 include("${CMAKE_CURRENT_LIST_DIR}/hangpose-targets.cmake")
 
 if(NOT TARGET hangpose::hangpose)

@@ -1,4 +1,5 @@
-# What `make install` and the Debian package hold. All of it finds the rest by where it is itself, so it may be moved.
+# Files of `make install` and of the Debian package. They refer to each other by relative paths, so the installation can
+# be moved.
 install(TARGETS hangpose_static hangpose_shared EXPORT hangpose-targets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(FILES include/hangpose.h include/hangpose.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
@@ -10,13 +11,13 @@ write_basic_package_version_file(hangpose-config-version.cmake COMPATIBILITY Sam
 install(FILES ffi/cmake/hangpose-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/hangpose-config-version.cmake
   DESTINATION ${config_dir})
 
-# From the folder of hangpose.pc back to the prefix.
+# Relative path from the folder of hangpose.pc to the prefix.
 file(RELATIVE_PATH to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 string(REGEX REPLACE "/$" "" to_prefix "${to_prefix}")
 configure_file(ffi/cmake/hangpose.pc.in hangpose.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/hangpose.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
-# ROS 2 finds packages by these.
+# ROS 2 finds packages through these files.
 install(FILES package.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/hangpose)
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/hangpose "")
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/hangpose
@@ -31,8 +32,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "${PROJECT_DESCRIPTION}
- From a triangle mesh of the object and a point cloud of the supporter to ranked poses, in memory that the caller owns.
- Holds libhangpose.a, libhangpose.so, the headers for C and C++, and what CMake and pkg-config need to find them.")
+ Predicts ranked poses from a triangle mesh of the object and a point cloud of the supporter, in memory that the caller
+ owns. Contains libhangpose.a, libhangpose.so, the headers for C and C++, and the CMake and pkg-config files.")
 install(FILES ${CMAKE_CURRENT_SOURCE_DIR}/LICENSE-MIT DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libhangpose-dev
   RENAME copyright)
 install(FILES LICENSE-APACHE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libhangpose-dev)

@@ -1,16 +1,22 @@
-//! Writes objects, supporters and what Rust predicts for them, for ffi/tests/c/pairs.c to hold the archive against:
-//! `cargo run -p hangpose-ffi --example pairs -- folder`.
+//! Writes objects, supporters and the predictions that Rust makes for them, for ffi/tests/c/pairs.c to compare with the
+//! archive: `cargo run -p hangpose-ffi --example pairs -- folder`.
 //!
-//! Each file is little-endian words of 32 bits: profile; vertices, triangles, points; the three arrays and the normals;
-//! then what is expected: status, poses, and from `hangpose_prediction` the stage and the counts; and for each pose what
-//! follows `struct_size` in `hangpose_pose`.
+//! The comparison proves that the C call, in the C caller's memory, gives the same bits as the Rust call. It does not
+//! test the conversion from the core's types to the C structs, because both sides use it; tests/conversions.rs does.
+//!
+//! Each file holds little-endian words of 32 bits: profile; number of vertices, triangles and points; the three arrays
+//! and the normals; the expected status; the words of `hangpose_prediction` from `pose_count` to `settling_firm`, then
+//! its work; and for each pose the words of `hangpose_pose` after `struct_size`.
 
-use hangpose::geometry::{Cloud, Mesh, Pose};
-use hangpose::hanging::{HangingPose, MatchingCounts, SettlingCounts};
-use hangpose::mechanics::{DIRECTIONS, MAX_CONTACTS};
+use hangpose::geometry::{Cloud, Mesh};
+use hangpose::hanging::HangingPose;
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files, predict_poses};
+use hangpose_ffi::{
+    HANGPOSE_OK, HANGPOSE_PROFILE_PAPER, HANGPOSE_REJECTED, hangpose_pose, hangpose_prediction,
+};
 use std::error::Error;
 use std::f32::consts::TAU;
+use std::mem::offset_of;
 use std::path::Path;
 
 const CAPACITY: usize = 10;
@@ -33,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let file = files::read_mesh(&samples.join(name))?;
         things.push(Thing { vertices: file.vertices, triangles: file.triangles });
     }
-    // Rings on which everything fits, and one that is too small for any peg.
+    // Two rings that fit on every supporter, and one that is too small for each of them.
     for (radius, thickness) in [(0.03, 0.003), (0.05, 0.008), (0.004, 0.002)] {
         things.push(ring(radius, thickness));
     }
@@ -61,7 +67,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn words(thing: &Thing, support: &Support, profile: u32) -> Result<Vec<u32>, Box<dyn Error>> {
-    let params = if profile == 1 { Params::paper() } else { Params::default() };
+    let params = if profile == HANGPOSE_PROFILE_PAPER { Params::paper() } else { Params::default() };
     let (mesh, cloud) =
         (Mesh::new(&thing.vertices, &thing.triangles)?, Cloud::new(&support.points, Some(&support.normals))?);
     let (mut memory, mut more_memory, monitor) = (Vec::new(), Vec::new(), Monitor::new());
@@ -77,73 +83,30 @@ fn words(thing: &Thing, support: &Support, profile: u32) -> Result<Vec<u32>, Box
     words.extend(triangles.iter().flatten());
     words.extend(floats(&support.points));
     words.extend(floats(&support.normals));
-    words.extend([
-        u32::from(found.poses.is_empty()),
-        found.poses.len() as u32,
-        found.rejection.map_or(0, |rejection| rejection.stage as u32 + 1),
-    ]);
-    let MatchingCounts { pairs, fitting, clear } = found.counts.matching;
-    words.extend([pairs, fitting, clear].map(|count| count as u32));
-    let SettlingCounts {
-        candidates,
-        clear,
-        released,
-        rotated_off,
-        slid_off,
-        moving,
-        at_rest,
-        wedged,
-        probable,
-        firm,
-    } = found.counts.settling;
-    let settling =
-        [candidates, clear, released, rotated_off, slid_off, moving, at_rest, wedged, probable, firm];
-    words.extend(settling.map(|count| count as u32));
-    found.poses.iter().for_each(|pose| words.extend(pose_words(pose)));
+    let status = if found.poses.is_empty() { HANGPOSE_REJECTED } else { HANGPOSE_OK };
+    words.push(status as u32);
+    let prediction = hangpose_prediction::from(&found);
+    let end = offset_of!(hangpose_prediction, settling_firm) + size_of::<u32>();
+    words.extend(words_between(&prediction, offset_of!(hangpose_prediction, pose_count), end));
+    for work in [prediction.rays, prediction.distance_queries] {
+        words.extend([work as u32, (work >> 32) as u32]);
+    }
+    for pose in found.poses {
+        let after_size = offset_of!(hangpose_pose, position);
+        words.extend(words_between(&hangpose_pose::from(pose), after_size, size_of::<hangpose_pose>()));
+    }
     Ok(words)
 }
 
-fn pose_words(hanging: &HangingPose) -> Vec<u32> {
-    let bits = |numbers: &[f32]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-    let pose = |pose: &Pose| {
-        [bits(pose.translation.vector.as_slice()), bits(pose.rotation.coords.as_slice())].concat()
-    };
-    let mut words = pose(&hanging.pose);
-    words.push(u32::from(hanging.rest.is_some()));
-    if let Some(rest) = &hanging.rest {
-        words.push(rest.probability.to_bits());
-        words.extend(pose(&rest.pose));
-        words.extend(bits(&[rest.sinking, rest.clearance]));
-        let margin = &rest.margin;
-        words.extend(bits(&margin.tilts));
-        words.extend(bits(&[margin.least_tilt(), margin.jolt_time, margin.tilted_sinking]));
-        words.extend(bits(&[margin.escape_rise, margin.escape_ratio]));
-        words.extend(bits(&[margin.knock_speed, margin.centre_of_mass_radius]));
-        words.push(rest.contacts().len() as u32);
-        for place in 0..MAX_CONTACTS {
-            let contact = rest.contacts().get(place).copied().unwrap_or_default();
-            words.extend(bits(contact.position.coords.as_slice()));
-            words.extend(bits(contact.normal.as_slice()));
-            words.push(contact.force.to_bits());
-        }
-    } else {
-        words.extend([f32::NAN.to_bits(); 1 + 7 + 2 + DIRECTIONS + 7]);
-        words.extend([0; 1 + 7 * MAX_CONTACTS]);
-    }
-    words.push(u32::from(hanging.matched.is_some()));
-    if let Some(matched) = &hanging.matched {
-        let cost = &matched.cost;
-        words.extend([matched.object_site, matched.support_site]);
-        words.extend([u32::from(matched.is_reversed), cost.collision]);
-        words.extend(bits(&[cost.boundary, cost.contact_area, cost.total]));
-    } else {
-        words.extend([u32::MAX, u32::MAX, 0, 0]);
-        words.extend([f32::NAN.to_bits(); 3]);
-    }
-    words
+/// The words of a C struct between two offsets in bytes, where there is no padding.
+fn words_between<T>(of: &T, start: usize, end: usize) -> Vec<u32> {
+    assert!(end <= size_of::<T>() && align_of::<T>() >= 4);
+    let first = std::ptr::from_ref(of).cast::<u32>();
+    // SAFETY: within the struct and aligned; every field in between is a number or an array of numbers of 32 bits.
+    (start / 4..end / 4).map(|word| unsafe { first.add(word).read() }).collect()
 }
 
-/// A ring around z.
+/// A ring around the z axis; radius of the centre line and of the tube, metres.
 fn ring(radius: f32, thickness: f32) -> Thing {
     const ROWS: u32 = 40;
     const COLUMNS: u32 = 14;
@@ -161,7 +124,7 @@ fn ring(radius: f32, thickness: f32) -> Thing {
     Thing { vertices: vertices.collect(), triangles: triangles.collect() }
 }
 
-/// A peg along y, 8 cm long, that rises by `rise` metres a metre.
+/// A peg along the y axis, 8 cm long, with a slope of `rise`; radius in metres.
 fn peg(radius: f32, rise: f32) -> Support {
     const COLUMNS: u32 = 30;
     let normals: Vec<[f32; 3]> = (0..80 * COLUMNS)

@@ -1,8 +1,8 @@
-//! From pointers to references: everything that C hands over passes here, and is checked or vouched for.
+//! Conversion of the pointers of a C caller into references. Every argument from C passes through this module.
 //!
-//! What can be known is checked: null, alignment, `struct_size`, counts, overlaps. What cannot, the caller vouches for,
-//! as the top of the header says: that a pointer that is not null leads to what its type says, as many of it as the
-//! count says, and that no one else writes there during the call.
+//! The module checks what can be checked: null, alignment, `struct_size`, counts, overlaps. The rest are the
+//! obligations of the caller, given at the top of the header: a pointer that is not null leads to a valid value of
+//! its type, or to as many as the count says, and nobody else writes there during the call.
 
 use crate::detail::hangpose_detail;
 use crate::failure::Failure;
@@ -12,13 +12,13 @@ use crate::status::hangpose_status;
 ///
 /// # Safety
 ///
-/// It is `repr(C)`, its first field is the `u32` `struct_size`, every bit pattern is a value, and `NAME` is what the
-/// header calls a pointer to it.
+/// It is `repr(C)`, its first field is the `u32` `struct_size`, every bit pattern is a valid value, and `NAME` is
+/// the name of the argument in the header.
 pub(crate) unsafe trait Public: Copy {
     const NAME: &'static str;
 }
 
-/// Whether `pointer` may lead to a `T`.
+/// Checks that `pointer` is not null and is aligned for a `T`.
 pub(crate) fn check<T>(argument: &'static str, pointer: *const T) -> Result<(), Failure> {
     if pointer.is_null() {
         Err(Failure::Null { argument })
@@ -29,16 +29,16 @@ pub(crate) fn check<T>(argument: &'static str, pointer: *const T) -> Result<(), 
     }
 }
 
-/// Whether `pointer` leads to a `T` of this header.
+/// Checks that `pointer` leads to a `T` of this header.
 pub(crate) fn check_public<T: Public>(pointer: *const T) -> Result<(), Failure> {
     check(T::NAME, pointer)?;
-    // SAFETY: not null and aligned; that a struct with a `struct_size` begins here, whatever its size, the caller
-    // vouches for. No more is read than this field.
+    // SAFETY: not null and aligned; the caller vouches that a struct with a `struct_size` begins here, whatever its
+    // size. Only this field is read.
     let given = unsafe { pointer.cast::<u32>().read() } as usize;
     check_size::<T>(given)
 }
 
-/// Whether `given` is the size of a `T` of this header.
+/// Checks that `given` is the size of a `T` of this header.
 pub(crate) fn check_size<T: Public>(given: usize) -> Result<(), Failure> {
     let expected = size_of::<T>();
     if given == expected { Ok(()) } else { Err(Failure::StructSize { argument: T::NAME, given, expected }) }
@@ -48,7 +48,7 @@ pub(crate) fn check_size<T: Public>(given: usize) -> Result<(), Failure> {
 ///
 /// # Safety
 ///
-/// What the caller vouches for, see the top of this file.
+/// The obligations of the caller at the top of this file.
 pub(crate) unsafe fn input<'a, T: Public>(pointer: *const T) -> Result<&'a T, Failure> {
     check_public(pointer)?;
     // SAFETY: not null, aligned and of the right size; every bit pattern is a `T`. The caller vouches for the rest.
@@ -59,28 +59,28 @@ pub(crate) unsafe fn input<'a, T: Public>(pointer: *const T) -> Result<&'a T, Fa
 ///
 /// # Safety
 ///
-/// What the caller vouches for, see the top of this file.
+/// The obligations of the caller at the top of this file.
 pub(crate) unsafe fn optional_input<'a, T: Public>(pointer: *const T) -> Result<Option<&'a T>, Failure> {
-    // SAFETY: as this function's.
+    // SAFETY: those of this function.
     if pointer.is_null() { Ok(None) } else { unsafe { input(pointer) }.map(Some) }
 }
 
-/// A struct for the answer.
+/// A struct for the result.
 ///
 /// # Safety
 ///
-/// What the caller vouches for, see the top of this file; and that it is kept apart from what the call reads.
+/// The obligations of the caller at the top of this file, and the struct does not overlap what the call reads.
 pub(crate) unsafe fn output<'a, T: Public>(pointer: *mut T) -> Result<&'a mut T, Failure> {
     check_public(pointer)?;
     // SAFETY: not null, aligned and of the right size; every bit pattern is a `T`. The caller vouches for the rest.
     Ok(unsafe { &mut *pointer })
 }
 
-/// A place for a pointer.
+/// The address at which the call stores a pointer.
 ///
 /// # Safety
 ///
-/// What the caller vouches for, see the top of this file.
+/// The obligations of the caller at the top of this file.
 pub(crate) unsafe fn place<'a, T>(
     argument: &'static str,
     pointer: *mut *mut T,
@@ -94,7 +94,7 @@ pub(crate) unsafe fn place<'a, T>(
 ///
 /// # Safety
 ///
-/// What the caller vouches for, see the top of this file; and `T` is `f32` or `u32`.
+/// The obligations of the caller at the top of this file, and `T` is `f32` or `u32`.
 pub(crate) unsafe fn rows<'a, T>(
     argument: &'static str,
     pointer: *const T,
@@ -110,12 +110,12 @@ pub(crate) unsafe fn rows<'a, T>(
     Ok(unsafe { core::slice::from_raw_parts(pointer.cast(), count as usize) })
 }
 
-/// `count` rows of three numbers to be written.
+/// `count` rows of three numbers for the call to write.
 ///
 /// # Safety
 ///
-/// What the caller vouches for, see the top of this file; that they are kept apart from what the call reads; and `T`
-/// is `f32` or `u32`.
+/// The obligations of the caller at the top of this file, the rows do not overlap what the call reads, and `T` is
+/// `f32` or `u32`.
 pub(crate) unsafe fn rows_mut<'a, T>(
     argument: &'static str,
     pointer: *mut T,
@@ -123,11 +123,11 @@ pub(crate) unsafe fn rows_mut<'a, T>(
 ) -> Result<&'a mut [[T; 3]], Failure> {
     check(argument, pointer)?;
     check_count::<[T; 3]>(argument, count)?;
-    // SAFETY: as in `rows`, and no one else has them. The caller vouches for the rest.
+    // SAFETY: as in `rows`, and nobody else uses them. The caller vouches for the rest.
     Ok(unsafe { core::slice::from_raw_parts_mut(pointer.cast(), count as usize) })
 }
 
-/// Whether so many `T` can be in memory at all.
+/// Checks that `count` values of type `T` fit into the address space.
 fn check_count<T>(field: &'static str, count: u32) -> Result<(), Failure> {
     let most = isize::MAX as usize / size_of::<T>();
     if count as usize <= most { Ok(()) } else { Err(Failure::Count { field, count: count as usize, most }) }
@@ -137,7 +137,7 @@ fn check_count<T>(field: &'static str, count: u32) -> Result<(), Failure> {
 ///
 /// # Safety
 ///
-/// What the caller vouches for, see the top of this file; and that it is kept apart from what the call reads.
+/// The obligations of the caller at the top of this file, and the memory does not overlap what the call reads.
 pub(crate) unsafe fn memory<'a>(pointer: *mut u8, size: usize) -> Result<&'a mut [u8], Failure> {
     let most = isize::MAX as usize;
     if size == 0 {
@@ -147,13 +147,13 @@ pub(crate) unsafe fn memory<'a>(pointer: *mut u8, size: usize) -> Result<&'a mut
     if size > most || pointer.addr().checked_add(size).is_none() {
         return Err(Failure::Count { field: "memory_size", count: size, most });
     }
-    // SAFETY: not null and short enough for a slice, and no one else has it. C may not have written there yet, but
-    // nothing reads a byte before it was written: the core's arena zeroes what it hands out, and the models and poses
-    // that this crate puts there are written whole.
+    // SAFETY: not null and short enough for a slice, and nobody else uses it. C may not have initialised it, but no
+    // byte is read before it is written: the core's arena zeroes the memory that it hands out, and this crate writes
+    // its models and poses completely.
     Ok(unsafe { core::slice::from_raw_parts_mut(pointer, size) })
 }
 
-/// Something that a call reads or writes, for as far as its extent is known.
+/// Memory that a call reads or writes, as far as its extent is known.
 #[derive(Clone, Copy)]
 pub(crate) struct Region {
     name: &'static str,
@@ -178,11 +178,11 @@ impl Region {
     }
 }
 
-/// What the header calls a pointer to a detail.
+/// Name of a detail argument in the header.
 pub(crate) const DETAIL: &str = "detail";
 
-/// Says where what is written overlaps anything else. The detail comes first, so that it is known whether it may be
-/// written.
+/// Fails if memory that the call writes overlaps anything else. The detail comes first, so that it is known whether
+/// it may be written.
 pub(crate) fn keep_apart(regions: &[Region]) -> Result<(), Failure> {
     debug_assert!(regions[1..].iter().all(|region| region.name != DETAIL));
     for (index, one) in regions.iter().enumerate() {
@@ -196,11 +196,11 @@ pub(crate) fn keep_apart(regions: &[Region]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Makes a call, and says in `detail`, unless it is null, what became of it.
+/// Makes a call and writes its result to `detail`, unless `detail` is null.
 ///
 /// # Safety
 ///
-/// What the caller vouches for, see the top of this file.
+/// The obligations of the caller at the top of this file.
 pub(crate) unsafe fn report(
     detail: *mut hangpose_detail,
     call: impl FnOnce() -> Result<hangpose_status, Failure>,
@@ -212,7 +212,7 @@ pub(crate) unsafe fn report(
     }
     let result = call();
     let is_apart = !matches!(result, Err(Failure::Overlap { written: DETAIL, .. }));
-    // SAFETY: checked above. Where it lies in something else, it is not written.
+    // SAFETY: checked above. A detail that overlaps another argument is not written.
     if is_apart && let Some(detail) = unsafe { detail.as_mut() } {
         match &result {
             Ok(status) => detail.answer(*status),

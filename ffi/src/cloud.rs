@@ -2,20 +2,22 @@ use crate::border::{Public, Region, rows};
 use crate::failure::Failure;
 use hangpose_core::geometry::{Cloud, CloudError, MAX_COUNT};
 
-/// A point cloud in the caller's arrays, in metres. Nothing is kept after the call.
+/// A point cloud in the caller's arrays. The library keeps no pointer to the arrays after the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_cloud {
     /// sizeof(hangpose_cloud), set by the caller.
     pub struct_size: u32,
-    /// How many points there are.
+    /// Number of points.
     pub point_count: u32,
-    /// point_count rows of x, y, z; metres, in supporter coordinates, each within 1,000,000.
+    /// Array of point_count rows of x, y, z: metres, in supporter coordinates, each within +-1,000,000.
     pub points: *const f32,
-    /// point_count rows of x, y, z, out of the solid, of any length; zeros where a normal is not known; or null, and
-    /// they are estimated.
+    /// Array of point_count rows of x, y, z: normals that point out of the solid, of any length. A row of zeros
+    /// marks an unknown normal. May be null: no normal is known. Unknown normals are estimated; they follow the
+    /// known normals around them.
     pub normals: *const f32,
-    /// x, y, z from where the points were seen, metres, which estimated normals face; or null.
+    /// x, y, z of the sensor position, metres, in supporter coordinates: if no normal is known, the estimated
+    /// normals face it. May be null: they are then oriented from point to point, starting with up at the top.
     pub viewpoint: *const f32,
 }
 
@@ -29,26 +31,26 @@ impl hangpose_cloud {
     ///
     /// # Safety
     ///
-    /// What the caller vouches for, see `border`.
+    /// The obligations of the caller, see `border`.
     pub(crate) unsafe fn check(&self) -> Result<Cloud<'_>, Failure> {
         self.check_count()?;
-        // SAFETY: as this function's.
+        // SAFETY: those of this function.
         let points = unsafe { rows("cloud.points", self.points, self.point_count) }?;
         let normals = match self.normals.is_null() {
             true => None,
-            // SAFETY: as this function's.
+            // SAFETY: those of this function.
             false => Some(unsafe { rows("cloud.normals", self.normals, self.point_count) }?),
         };
         let cloud = Cloud::new(points, normals)?;
         if self.viewpoint.is_null() {
             return Ok(cloud);
         }
-        // SAFETY: as this function's.
+        // SAFETY: those of this function.
         let viewpoint = unsafe { rows("cloud.viewpoint", self.viewpoint, 1) }?;
         Ok(cloud.seen_from(viewpoint[0])?)
     }
 
-    /// Checks the count before anything is read that may not be there.
+    /// Checks the count before the arrays are read.
     pub(crate) fn check_count(&self) -> Result<(), Failure> {
         match self.point_count as usize {
             0 => Err(CloudError::Empty.into()),

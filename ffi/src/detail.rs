@@ -3,43 +3,43 @@ use crate::status::{hangpose_status, status_text};
 use core::ffi::c_char;
 use core::fmt::Write;
 
-/// Where there is no index.
+/// Value of an index that does not apply.
 pub const HANGPOSE_NO_INDEX: u32 = 0xFFFF_FFFF;
-/// Room for the longest field, with its NUL.
+/// Length of hangpose_detail.field in characters, with the terminating NUL.
 pub const HANGPOSE_FIELD_CHARS: usize = 64;
-/// Room for the longest message, with its NUL.
+/// Length of hangpose_detail.message in characters, with the terminating NUL.
 pub const HANGPOSE_MESSAGE_CHARS: usize = 256;
 
-/// What a call has to say beside its status: which argument or field is wrong, and what it may be. Every call takes one,
-/// or null; it is written also where all is well. A detail belongs to one call at a time.
+/// Diagnosis of a call: the argument or field that is wrong, its value and its valid range. Every function that can
+/// fail takes a pointer to one, which may be null, and writes it on success too. Concurrent calls need one each.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_detail {
     /// sizeof(hangpose_detail), set by the caller.
     pub struct_size: u32,
-    /// What the call returned.
+    /// The status that the call returned.
     pub status: hangpose_status,
-    /// The vertex, triangle or point that is wrong, or HANGPOSE_NO_INDEX.
+    /// Index of the wrong vertex, triangle or point, or HANGPOSE_NO_INDEX.
     pub index: u32,
-    /// The value that is wrong; NaN where no number is.
+    /// The wrong value; NaN if it is not a number or does not apply.
     pub value: f64,
-    /// The least that it may be; NaN where there is no range.
+    /// Least valid value; NaN if there is no range.
     pub minimum: f64,
-    /// The most that it may be; NaN where there is no range.
+    /// Greatest valid value; NaN if there is no range.
     pub maximum: f64,
-    /// The argument or field that is wrong, such as "params.radius_ratio" or "memory", or "".
+    /// Name of the wrong argument or field, such as "params.radius_ratio" or "memory", or "".
     pub field: [c_char; HANGPOSE_FIELD_CHARS],
-    /// A sentence for people: what is wrong and how to mend it.
+    /// A sentence for people: what is wrong and how to correct it.
     pub message: [c_char; HANGPOSE_MESSAGE_CHARS],
 }
 
 impl hangpose_detail {
-    /// What goes with a call that went well.
+    /// Fills in the detail of a successful call.
     pub(crate) fn answer(&mut self, status: hangpose_status) {
         self.set(status, Place::default(), &status_text(status).to_str().unwrap_or_default());
     }
 
-    /// What goes with a call that did nothing.
+    /// Fills in the detail of a failed call, which did nothing.
     pub(crate) fn failure(&mut self, failure: &Failure) {
         self.set(failure.status(), failure.place(), failure);
     }
@@ -54,10 +54,10 @@ impl hangpose_detail {
     }
 }
 
-/// Writes text and a NUL, and what is not ASCII in UTF-8.
+/// Writes text and a NUL; characters beyond ASCII in UTF-8.
 fn print(to: &mut [c_char], text: core::fmt::Arguments) {
     let mut writer = Writer { to, used: 0 };
-    // Only fails where the text does not fit, and there it is cut; the tests hold the room against the longest.
+    // Fails only if the text does not fit. It is then truncated; a test checks that the longest messages fit.
     let _ = writer.write_fmt(text);
     let Writer { to, used } = writer;
     to[used] = 0;

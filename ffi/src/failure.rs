@@ -1,4 +1,4 @@
-//! Every way in which a call can be the caller's mistake, and what of it goes into a [`hangpose_detail`].
+//! The errors that a caller can make, and their report in a [`hangpose_detail`].
 //!
 //! [`hangpose_detail`]: crate::hangpose_detail
 
@@ -10,7 +10,7 @@ use hangpose_core::hanging::{AnalysisError, PredictError};
 use hangpose_core::memory::OutOfMemory;
 use hangpose_core::perception::sampling::SamplingError;
 
-/// Why a call did nothing.
+/// Reason why a call did nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Failure {
     Null { argument: &'static str },
@@ -32,7 +32,7 @@ pub(crate) enum Failure {
     Cancelled,
 }
 
-/// Where a failure is: the field with its prefix, the index of the element, the value and its range.
+/// Location of a failure: the field with its prefix, the index of the element, the value and its range.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Place {
     pub(crate) prefix: &'static str,
@@ -124,7 +124,7 @@ impl Place {
         Self { range: Some(range), ..self }
     }
 
-    /// The first of three numbers that is no coordinate.
+    /// The first of three numbers that is not a valid coordinate.
     fn coordinate(self, index: Option<usize>, position: [f32; 3]) -> Self {
         let bad = position.into_iter().find(|x| x.is_nan() || x.abs() > MAX_COORDINATE);
         Self { index, value: bad.map(f64::from), range: Some(COORDINATES), ..self }
@@ -180,45 +180,45 @@ fn params_place(error: ParamsError) -> Place {
 impl Display for Failure {
     fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Null { argument } => write!(f, "{argument} is null"),
+            Self::Null { argument } => write!(f, "{argument} is null: pass a valid pointer"),
             Self::Misaligned { argument, alignment } => {
-                write!(f, "{argument} must begin at a multiple of {alignment} bytes")
+                write!(f, "{argument} is misaligned: its address must be a multiple of {alignment} bytes")
             }
             Self::StructSize { argument, given, expected } => write!(
                 f,
-                "{argument} has struct_size {given} where {expected} belongs: set it to sizeof the struct, and compile with the library's own header"
+                "{argument}: struct_size is {given}, expected {expected}: set it to sizeof the struct, and compile with the library's own header"
             ),
             Self::Version { given } => write!(
                 f,
-                "the program was compiled for version {given} of the interface, the library has {}: compile with the library's own header",
+                "the program was compiled for version {given} of the interface, but the library has version {}: compile with the library's own header",
                 crate::HANGPOSE_ABI_VERSION
             ),
             Self::Memory { argument, needed, given } => write!(
                 f,
-                "{argument} has {given} bytes and {needed} are needed: ask the size query for limits that hold the input"
+                "{argument} has {given} bytes, but {needed} are needed: call the size query with limits that hold the input"
             ),
             Self::Overlap { written, other } => {
-                write!(f, "{written} overlaps {other}: the call would overwrite what it still reads")
+                write!(f, "{written} overlaps {other}, which the call would overwrite: pass separate memory")
             }
             Self::Handle { argument, maker } => write!(
                 f,
-                "{argument} is not what {maker} made: it was never made, moved to another address, or overwritten"
+                "{argument} was never created by {maker}, or was moved or overwritten: call {maker} and keep the result in place"
             ),
             Self::Busy { argument } => {
-                write!(f, "{argument} is in use in another thread: wait for that call to return")
+                write!(f, "{argument} is in use by another thread: wait until that call has returned")
             }
             Self::Empty { argument } => {
-                write!(f, "{argument} is empty since its last update was cancelled: update it again")
+                write!(f, "{argument} is empty because its last update was cancelled: update it again")
             }
             Self::Choice { field, value, most } => {
-                write!(f, "{field} is {value} and must be one of the header's constants, 0 to {most}")
+                write!(f, "{field} is {value}, but must be one of the values in hangpose.h, 0 to {most}")
             }
-            Self::Count { field, count, most } => write!(f, "{field} is {count} and must be 1 to {most}"),
+            Self::Count { field, count, most } => write!(f, "{field} is {count}, but must be 1 to {most}"),
             Self::Index { argument, index, count: 0 } => {
-                write!(f, "{argument} is {index}, but there are none")
+                write!(f, "{argument} is {index}, but there are no elements")
             }
             Self::Index { argument, index, count } => {
-                write!(f, "{argument} is {index} and must be below {count}")
+                write!(f, "{argument} is {index}, but must be less than {count}")
             }
             Self::Mesh(error) => error.fmt(f),
             Self::Cloud(error) => error.fmt(f),
@@ -277,7 +277,7 @@ impl From<SamplingError> for Failure {
     fn from(error: SamplingError) -> Self {
         match error {
             SamplingError::TooMany { count, limit } => Self::Count { field: "count", count, most: limit },
-            // Both come with one count from C.
+            // C passes one count for both arrays.
             SamplingError::Lengths { points, normals } => {
                 Self::Count { field: "count", count: normals, most: points }
             }

@@ -1,4 +1,4 @@
-//! What the getters of objects and supporters have in common.
+//! Code that the getters of objects and supporters share.
 
 use crate::border::{DETAIL, Public, Region, keep_apart, output, report};
 use crate::detail::hangpose_detail;
@@ -6,11 +6,11 @@ use crate::failure::Failure;
 use crate::handle::{Handle, Model};
 use crate::status::{HANGPOSE_OK, hangpose_status};
 
-/// Writes what `read` takes from a model to `answer`.
+/// Writes what `read` returns for a model to `answer`.
 ///
 /// # Safety
 ///
-/// As [`Handle::share`]'s, and what the caller of C vouches for, see the top of `border.rs`.
+/// Those of [`Handle::share`], and the obligations of the C caller at the top of `border.rs`.
 pub(crate) unsafe fn get<M: Model, T: Public>(
     handle: *const Handle<M>,
     answer: *mut T,
@@ -18,7 +18,7 @@ pub(crate) unsafe fn get<M: Model, T: Public>(
     read: impl FnOnce(&M) -> Result<T, Failure>,
 ) -> hangpose_status {
     let get = || {
-        // SAFETY: as this function's.
+        // SAFETY: those of this function.
         let shared = unsafe { Handle::share(handle) }?;
         let [handle, arena] = shared.regions();
         keep_apart(&[

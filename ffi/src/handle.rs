@@ -1,4 +1,5 @@
-//! Models in the caller's memory: a [`Handle`] at the front, and behind it what the core built the model of.
+//! Models in the caller's memory: a [`Handle`] at the front, and behind it the memory in which the core built the
+//! model.
 
 use crate::border::{Region, memory};
 use crate::failure::Failure;
@@ -6,29 +7,30 @@ use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicU32, Ordering};
 
-/// What a handle can hold.
+/// A type that a handle can hold.
 pub(crate) trait Model: Copy {
-    /// The word that a handle of this kind begins with.
+    /// First word of a handle of this kind.
     const MAGIC: u32;
-    /// What the header calls a pointer to it.
+    /// Name of the argument in the header.
     const ARGUMENT: &'static str;
-    /// The function that makes it.
+    /// Name of the function that creates it.
     const MAKER: &'static str;
 }
 
-/// What an opaque pointer in C leads to.
+/// The target of an opaque pointer in C.
 #[repr(C)]
 pub(crate) struct Handle<M> {
-    /// [`Model::MAGIC`]: tells a handle from memory that was never written, or has been since.
+    /// [`Model::MAGIC`]: distinguishes a handle from memory that was never written or was overwritten.
     magic: u32,
-    /// How many calls read the model at this moment, or [`BUILDING`] or [`EMPTY`].
+    /// Number of calls that read the model at the moment, or [`BUILDING`] or [`EMPTY`].
     users: AtomicU32,
-    /// Where the handle was made: a copy elsewhere still points into the original's memory, and is refused.
+    /// Address at which the handle was created. A copy at another address would still point into the memory of the
+    /// original, so it is refused.
     address: usize,
-    /// What is behind the handle.
+    /// Memory behind the handle.
     arena: *mut u8,
     arena_size: usize,
-    /// Written while `users` is `BUILDING`, read while it counts readers.
+    /// Written while `users` is `BUILDING`, read while `users` counts readers.
     model: UnsafeCell<MaybeUninit<M>>,
 }
 
@@ -37,14 +39,14 @@ const EMPTY: u32 = u32::MAX - 1;
 const MOST_USERS: u32 = u32::MAX - 2;
 
 impl<M: Model> Handle<M> {
-    /// Bytes that a handle takes in front of its model, wherever the memory begins.
+    /// Bytes for a handle in front of its model, in memory that begins at any address.
     pub(crate) const BYTES: usize = size_of::<Self>() + align_of::<Self>() - 1;
 
-    /// Makes a handle at the front of `size` bytes at `pointer`, and its model, of `needed` bytes, behind.
+    /// Creates a handle at the front of the `size` bytes at `pointer`, and behind it its model of `needed` bytes.
     ///
     /// # Safety
     ///
-    /// As [`memory`]'s, and no call uses a handle that was in this memory before.
+    /// Those of [`memory`], and no call uses a handle that was in this memory before.
     pub(crate) unsafe fn create(
         pointer: *mut u8,
         size: usize,
@@ -55,7 +57,7 @@ impl<M: Model> Handle<M> {
         if size < needed {
             return Err(Failure::Memory { argument: "memory", needed, given: size });
         }
-        // SAFETY: as this function's.
+        // SAFETY: those of this function.
         let all = unsafe { memory(pointer, size) }?;
         let skip = all.as_ptr().align_offset(align_of::<Self>());
         let (front, arena) = all[skip..].split_at_mut(size_of::<Self>());
@@ -63,13 +65,13 @@ impl<M: Model> Handle<M> {
         let (arena, arena_size) = (arena.as_mut_ptr(), arena.len());
         let address = handle.addr();
         let model = UnsafeCell::new(MaybeUninit::uninit());
-        // SAFETY: `front` is aligned, of the right size, and no one else's. The magic comes last, when there is a
-        // model: a handle that was here before is no more.
+        // SAFETY: `front` is aligned, of the right size, and nobody else uses it. The magic is written last, when there
+        // is a model. Until then a handle that was here before is invalid.
         unsafe {
             handle.write(Self { magic: 0, users: AtomicU32::new(0), address, arena, arena_size, model })
         };
-        // SAFETY: the arena is a part of `all` that nothing refers to, and no one touches it as long as the handle is
-        // in use, which is all the life that the model gets.
+        // SAFETY: the arena is a part of `all` to which nothing refers, and nobody touches it while the handle is in
+        // use. The model lives no longer than that.
         let model = build(unsafe { core::slice::from_raw_parts_mut(arena, arena_size) })?;
         // SAFETY: the handle was written above.
         unsafe {
@@ -83,30 +85,31 @@ impl<M: Model> Handle<M> {
     ///
     /// # Safety
     ///
-    /// The pointer is null or leads to as many bytes as a handle has.
+    /// The pointer is null or leads to as many readable bytes as a handle has.
     unsafe fn from_pointer<'a>(pointer: *const Self) -> Result<&'a Self, Failure> {
         let argument = M::ARGUMENT;
         if pointer.is_null() {
             return Err(Failure::Null { argument });
         }
-        // SAFETY: aligned, and readable as the caller vouches. Only numbers are read, until it is known to be a handle.
+        // SAFETY: aligned, and the caller vouches that it is readable. Only numbers are read until it is known to be a
+        // handle.
         let is_handle = pointer.is_aligned()
             && unsafe { (&raw const (*pointer).magic).read() } == M::MAGIC
             && unsafe { (&raw const (*pointer).address).read() } == pointer.addr();
         if !is_handle {
             return Err(Failure::Handle { argument, maker: M::MAKER });
         }
-        // SAFETY: `create` was here and nothing has written over it since.
+        // SAFETY: `create` wrote the handle and nothing has overwritten it since.
         Ok(unsafe { &*pointer })
     }
 
-    /// The model, for as long as the guard is there. Any number of threads may have it at once.
+    /// The model, as long as the guard exists. Any number of threads may share it.
     ///
     /// # Safety
     ///
-    /// As [`Self::from_pointer`]'s, and no one overwrites the handle's memory until the guard is gone.
+    /// Those of [`Self::from_pointer`], and nobody overwrites the memory of the handle while the guard exists.
     pub(crate) unsafe fn share<'a>(pointer: *const Self) -> Result<Shared<'a, M>, Failure> {
-        // SAFETY: as this function's.
+        // SAFETY: those of this function.
         let handle = unsafe { Self::from_pointer(pointer) }?;
         let mut users = handle.users.load(Ordering::Relaxed);
         loop {
@@ -124,18 +127,18 @@ impl<M: Model> Handle<M> {
         }
     }
 
-    /// Builds the model anew in the same memory. `check` looks whether it can be built in so many bytes; if not, the
-    /// old one stays. If `build` then fails, the handle is empty.
+    /// Builds the model again in the same memory. If `check` finds that the new model cannot be built in the given
+    /// number of bytes, the old model stays. If `build` then fails, the handle is empty.
     ///
     /// # Safety
     ///
-    /// As [`Self::share`]'s.
+    /// Those of [`Self::share`].
     pub(crate) unsafe fn rebuild(
         pointer: *const Self,
         check: impl FnOnce(usize, [Region; 2]) -> Result<(), Failure>,
         build: impl FnOnce(&'static mut [u8]) -> Result<M, Failure>,
     ) -> Result<(), Failure> {
-        // SAFETY: as this function's.
+        // SAFETY: those of this function.
         let handle = unsafe { Self::from_pointer(pointer) }?;
         let claim =
             |from| handle.users.compare_exchange(from, BUILDING, Ordering::Acquire, Ordering::Relaxed);
@@ -147,12 +150,12 @@ impl<M: Model> Handle<M> {
             handle.users.store(before, Ordering::Release);
             return Err(failure);
         }
-        // SAFETY: the arena was split off in `create` and nothing but the old model refers to it, which no one reads:
-        // there are no users, and there will be none before the next line but one.
+        // SAFETY: the arena was split off in `create`, and only the old model refers to it. Nobody reads that model:
+        // there are no users, and there can be none until `users` is stored below.
         let built = build(unsafe { core::slice::from_raw_parts_mut(handle.arena, handle.arena_size) });
         let after = if built.is_ok() { 0 } else { EMPTY };
         let result = built.map(|model| {
-            // SAFETY: no one else has the model while it is being built.
+            // SAFETY: nobody else uses the model while it is being built.
             unsafe { (*handle.model.get()).write(model) };
         });
         handle.users.store(after, Ordering::Release);
@@ -175,11 +178,11 @@ pub(crate) struct Shared<'a, M: Model> {
 
 impl<M: Model> Shared<'_, M> {
     pub(crate) fn model(&self) -> &M {
-        // SAFETY: a handle with users has a model, and no one writes to it as long as it has users.
+        // SAFETY: a handle with users has a model, and nobody writes to it while it has users.
         unsafe { (*self.handle.model.get()).assume_init_ref() }
     }
 
-    /// What the model occupies, as far as this is known: all the memory but a few bytes in front of the handle.
+    /// The memory of the model as far as it is known: all of it except a few bytes in front of the handle.
     pub(crate) fn regions(&self) -> [Region; 2] {
         self.handle.regions()
     }

@@ -1,12 +1,13 @@
 //! hangpose for C and C++: the functions and structs of `include/hangpose.h`, over [`hangpose_core`].
 //!
-//! This crate is the only one with `unsafe`. What C hands over is met here and nowhere else: `border` turns pointers
-//! into references or says what is wrong with them, `handle` keeps models in the caller's memory, and every function
-//! is a conversion between two calls of these. Names and comments end up in the header, see `examples/header.rs`.
+//! This crate is the only one with `unsafe`, and the only one that handles arguments from C. `border` converts
+//! pointers into references or reports an error, `handle` keeps models in the caller's memory, and every public
+//! function is a conversion between calls of these. The names and comments of this crate become the header, see
+//! `examples/header`.
 #![no_std]
-// The names are those that C sees.
+// The names are those of the C interface.
 #![allow(non_camel_case_types)]
-// What a caller has to see to is the same for every function, and said once, at the top of the header.
+// The obligations of the caller are the same for every function; the top of the header states them once.
 #![allow(clippy::missing_safety_doc)]
 
 mod border;

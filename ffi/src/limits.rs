@@ -10,23 +10,23 @@ use crate::supporter::SupporterHandle;
 use hangpose_core::hanging::{Object, Supporter, predict_bytes};
 use hangpose_core::memory::Limits;
 
-/// How large the inputs may be that memory is set aside for. What stays below needs no more.
+/// The largest inputs for which memory is reserved. Smaller inputs need no more memory.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_limits {
     /// sizeof(hangpose_limits), set by the caller.
     pub struct_size: u32,
-    /// Vertices of the object's mesh.
+    /// Number of vertices of the object's mesh.
     pub vertices: u32,
-    /// Triangles of the object's mesh.
+    /// Number of triangles of the object's mesh.
     pub triangles: u32,
-    /// hangpose_params.samples.
+    /// Value of hangpose_params.samples.
     pub samples: u32,
-    /// hangpose_params.voxels.
+    /// Value of hangpose_params.voxels.
     pub voxels: u32,
-    /// Points of the supporter's cloud.
+    /// Number of points of the supporter's cloud.
     pub points: u32,
-    /// Poses asked of hangpose_predict.
+    /// Value of `pose_capacity` for hangpose_predict.
     pub poses: u32,
 }
 
@@ -47,8 +47,9 @@ impl hangpose_limits {
     }
 }
 
-/// Sets `limits` to what `params`, `mesh` and `cloud` take, and one pose; a mesh or a cloud may be null, and counts as
-/// none. Only the counts are looked at.
+/// Sets `limits` to what `params`, `mesh` and `cloud` need, with `poses` 1. `mesh` or `cloud` may be null and then
+/// counts as empty. Only the counts are read, not the arrays. Set limits->struct_size before the call. Returns
+/// HANGPOSE_OK, or an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_limits_of(
     params: *const hangpose_params,
@@ -85,16 +86,18 @@ pub unsafe extern "C" fn hangpose_limits_of(
     unsafe { report(detail, set) }
 }
 
-/// Bytes of memory for any object within `limits`, by vertices, triangles, samples and voxels; 0 if `limits` is null
-/// or its struct_size is wrong. Limits beyond all memory give more than there can be.
+/// Returns the bytes of memory for any object within `limits`; depends on vertices, triangles, samples and voxels.
+/// Returns 0 if `limits` is null or its struct_size is wrong. For limits beyond any memory the result is larger
+/// than any memory; it does not wrap around.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_object_bytes(limits: *const hangpose_limits) -> usize {
     // SAFETY: the caller vouches for the pointer.
     unsafe { bytes(limits, |limits| ObjectHandle::BYTES.saturating_add(Object::bytes(&limits.to_core()))) }
 }
 
-/// Bytes of memory for any supporter within `limits`, by points; 0 if `limits` is null or its struct_size is wrong.
-/// Limits beyond all memory give more than there can be.
+/// Returns the bytes of memory for any supporter within `limits`; depends on points. Returns 0 if `limits` is null
+/// or its struct_size is wrong. For limits beyond any memory the result is larger than any memory; it does not wrap
+/// around.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_supporter_bytes(limits: *const hangpose_limits) -> usize {
     // SAFETY: the caller vouches for the pointer.
@@ -103,8 +106,9 @@ pub unsafe extern "C" fn hangpose_supporter_bytes(limits: *const hangpose_limits
     }
 }
 
-/// Bytes of memory for matching any object and supporter within `limits`, by points and poses; 0 if `limits` is
-/// null or its struct_size is wrong. Limits beyond all memory give more than there can be.
+/// Returns the bytes of working memory for hangpose_predict with any object and supporter within `limits`; depends
+/// on points and poses. Returns 0 if `limits` is null or its struct_size is wrong. For limits beyond any memory the
+/// result is larger than any memory; it does not wrap around.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_predict_bytes(limits: *const hangpose_limits) -> usize {
     // SAFETY: the caller vouches for the pointer.
@@ -115,8 +119,8 @@ pub unsafe extern "C" fn hangpose_predict_bytes(limits: *const hangpose_limits) 
 
 /// # Safety
 ///
-/// What the caller vouches for, see `border`.
+/// The obligations of the caller, see `border`.
 unsafe fn bytes(limits: *const hangpose_limits, of: impl FnOnce(&hangpose_limits) -> usize) -> usize {
-    // SAFETY: as this function's.
+    // SAFETY: those of this function.
     unsafe { input(limits) }.map_or(0, of)
 }

@@ -2,20 +2,22 @@ use crate::border::{Public, Region, rows};
 use crate::failure::Failure;
 use hangpose_core::geometry::{MAX_COUNT, Mesh, MeshError};
 
-/// A triangle mesh in the caller's arrays, in metres, corners counter-clockwise seen from outside. Open, overlapping and
-/// multi-body meshes are fine, and so are degenerate triangles, which are passed over. Nothing is kept after the call.
+/// A triangle mesh in the caller's arrays. Corners are counter-clockwise seen from outside. Open, overlapping and
+/// multi-body meshes are valid; degenerate triangles are skipped. The library keeps no pointer to the arrays after
+/// the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_mesh {
     /// sizeof(hangpose_mesh), set by the caller.
     pub struct_size: u32,
-    /// How many vertices there are.
+    /// Number of vertices.
     pub vertex_count: u32,
-    /// How many triangles there are.
+    /// Number of triangles.
     pub triangle_count: u32,
-    /// vertex_count rows of x, y, z; metres, in object coordinates, each within 1,000,000.
+    /// Array of vertex_count rows of x, y, z: metres, in object coordinates, each within +-1,000,000. For
+    /// hangpose_mesh_sample the coordinates are those of the supporter.
     pub vertices: *const f32,
-    /// triangle_count rows of three indices of vertices.
+    /// Array of triangle_count rows of three vertex indices, counted from 0.
     pub triangles: *const u32,
 }
 
@@ -29,10 +31,10 @@ impl hangpose_mesh {
     ///
     /// # Safety
     ///
-    /// What the caller vouches for, see `border`.
+    /// The obligations of the caller, see `border`.
     pub(crate) unsafe fn check(&self) -> Result<Mesh<'_>, Failure> {
         self.check_counts()?;
-        // SAFETY: as this function's.
+        // SAFETY: those of this function.
         let (vertices, triangles) = unsafe {
             (
                 rows("mesh.vertices", self.vertices, self.vertex_count)?,
@@ -42,7 +44,7 @@ impl hangpose_mesh {
         Ok(Mesh::new(vertices, triangles)?)
     }
 
-    /// Checks the counts before anything is read that may not be there.
+    /// Checks the counts before the arrays are read.
     pub(crate) fn check_counts(&self) -> Result<(), Failure> {
         if self.triangle_count == 0 {
             return Err(MeshError::Empty.into());

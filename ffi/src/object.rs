@@ -13,9 +13,9 @@ use hangpose_core::hanging::sites::ObjectCounts;
 use hangpose_core::hanging::{Object, ObjectPlaces};
 use hangpose_core::memory::Limits;
 
-/// An object, analysed once, at the front of the memory that it was made in. There is nothing to free; the memory must
-/// stay where it is, and no one else may write to it, for as long as the object is used. Any number of threads may use
-/// it at once.
+/// An analysed object, at the front of the memory in which it was created. There is nothing to free. As long as it
+/// is used, its memory must not be moved and nobody else may write to it. Any number of threads may use it at the
+/// same time.
 pub struct hangpose_object(#[allow(dead_code)] ObjectHandle);
 
 pub(crate) type ObjectHandle = Handle<Object<'static>>;
@@ -26,11 +26,13 @@ impl Model for Object<'static> {
     const MAKER: &'static str = "hangpose_object_create";
 }
 
-/// Analyses `mesh` in `memory`, which takes hangpose_object_bytes for its size and that of `params`, and sets `object` to
-/// what it made there, or to null. `monitor` may be null.
+/// Analyses `mesh` in `memory` and sets `*object` to the result, which stays in `memory`. `memory_size` is at least
+/// hangpose_object_bytes for the size of `mesh` and for `params`. `mesh`, its arrays and `params` are needed during
+/// the call only. `monitor` may be null.
 ///
-/// HANGPOSE_OK, or HANGPOSE_WORK_LIMIT with an object that may have more sites or contacts than were found;
-/// HANGPOSE_CANCELLED without one.
+/// Returns HANGPOSE_OK; HANGPOSE_WORK_LIMIT with an object that may have more sites or contact candidates than were
+/// found; HANGPOSE_CANCELLED or an error without an object. Initialise `*object` to null: without an object it is
+/// null or unchanged.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_object_create(
     memory: *mut c_void,
@@ -85,39 +87,40 @@ pub unsafe extern "C" fn hangpose_object_create(
     unsafe { report(detail, create) }
 }
 
-/// What the analysis of an object found.
+/// Result of the analysis of an object.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_object_info {
     /// sizeof(hangpose_object_info), set by the caller.
     pub struct_size: u32,
-    /// HANGPOSE_WORK_LIMIT where the search for sites or contacts ended early, HANGPOSE_OK where it did not.
+    /// HANGPOSE_WORK_LIMIT if the search for sites or contact candidates ended early, else HANGPOSE_OK.
     pub stopped: hangpose_status,
-    /// 1 where the mesh is closed, so that it has a volume, else 0.
+    /// 1 if the mesh is closed, so that it has a volume, else 0.
     pub is_closed: u32,
-    /// 1 where the mesh is closed but its triangles face inwards, which is allowed for, else 0.
+    /// 1 if the mesh is closed and its triangles face inwards, else 0. The analysis corrects for this.
     pub is_inside_out: u32,
     /// Surface area, square metres.
     pub area: f32,
-    /// Volume, cubic metres; NaN where the mesh is not closed.
+    /// Volume, cubic metres; NaN if the mesh is not closed.
     pub volume: f32,
-    /// x, y, z of the centre of mass that poses are made for, metres, in object coordinates.
+    /// x, y, z of the centre of mass for which poses are made, metres, in object coordinates.
     pub centre_of_mass: [f32; 3],
-    /// Samples whose normal leans towards the centre of mass, eq. (3).
+    /// Number of samples whose normal points towards the centre of mass, eq. (3).
     pub contact_points: u32,
-    /// Clusters of them, eq. (4).
+    /// Number of clusters of contact points, eq. (4); 0 with HANGPOSE_CANDIDATES_CONTACTS.
     pub clusters: u32,
-    /// Clusters with a free space outside the object.
+    /// Number of clusters with a free space outside the object; 0 with HANGPOSE_CANDIDATES_CONTACTS.
     pub with_free_space: u32,
-    /// Free spaces that the object encircles, eq. (6).
+    /// Number of free spaces that the object encircles, eq. (6); 0 with HANGPOSE_CANDIDATES_CONTACTS.
     pub encircled: u32,
-    /// Different ones among them, eq. (7): the object's hanging sites; 0 with HANGPOSE_CANDIDATES_CONTACTS.
+    /// Number of hanging sites: encircled free spaces that differ from each other, eq. (7); 0 with
+    /// HANGPOSE_CANDIDATES_CONTACTS.
     pub sites: u32,
-    /// Places where the object can lie on something; 0 with HANGPOSE_CANDIDATES_SITES.
+    /// Number of contact candidates; 0 with HANGPOSE_CANDIDATES_SITES.
     pub contacts: u32,
-    /// Rays cast.
+    /// Number of rays cast.
     pub rays: u64,
-    /// Distance and inside-outside queries made.
+    /// Number of distance and inside-outside queries.
     pub distance_queries: u64,
 }
 
@@ -126,7 +129,8 @@ unsafe impl Public for hangpose_object_info {
     const NAME: &'static str = "info";
 }
 
-/// Writes what the analysis found to `info`.
+/// Writes the result of the analysis to `info`. Set info->struct_size before the call. Returns HANGPOSE_OK, or an
+/// error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_object_get_info(
     object: *const hangpose_object,
@@ -161,27 +165,28 @@ pub unsafe extern "C" fn hangpose_object_get_info(
     unsafe { get(object.cast::<ObjectHandle>(), info, detail, read) }
 }
 
-/// A place on an object into which a supporter can reach.
+/// A hanging site: a free space of the object into which a supporter can reach.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_object_site {
     /// sizeof(hangpose_object_site), set by the caller.
     pub struct_size: u32,
-    /// |P_h|: samples in the cluster of contact points.
+    /// |P_h|: number of samples in the cluster of contact points.
     pub contact_points: u32,
     /// c_h: x, y, z of the centre of the free space, metres, in object coordinates.
     pub position: [f32; 3],
-    /// v_h: unit vector along which the supporter passes through, in object coordinates; its sign means nothing.
+    /// v_h: x, y, z of the unit vector along which the supporter passes through, in object coordinates; the sign is
+    /// arbitrary.
     pub hanging_direction: [f32; 3],
-    /// p_h: x, y, z of the contact point that the free space was found from, metres, in object coordinates.
+    /// p_h: x, y, z of the contact point from which the free space was found, metres, in object coordinates.
     pub contact_point: [f32; 3],
     /// r_h: radius of the free space, metres.
     pub free_space_radius: f32,
-    /// m: share of the rays around the hanging direction that hit the object, eq. (5).
+    /// m: fraction of the rays around the hanging direction that hit the object, 0 to 1, eq. (5).
     pub encircled: f32,
-    /// m_1: the same among the rays above the hanging position.
+    /// m_1: fraction of the rays above the hanging position that hit the object, 0 to 1.
     pub encircled_above: f32,
-    /// m_2: the same among the rays below it.
+    /// m_2: fraction of the rays below the hanging position that hit the object, 0 to 1.
     pub encircled_below: f32,
 }
 
@@ -190,7 +195,8 @@ unsafe impl Public for hangpose_object_site {
     const NAME: &'static str = "site";
 }
 
-/// Writes hanging site `index`, below hangpose_object_info.sites, to `site`; the best encircled is 0.
+/// Writes hanging site `index` to `site`. `index` is less than hangpose_object_info.sites; site 0 is encircled
+/// best. Set site->struct_size before the call. Returns HANGPOSE_OK, or an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_object_get_site(
     object: *const hangpose_object,
@@ -216,25 +222,25 @@ pub unsafe extern "C" fn hangpose_object_get_site(
     unsafe { get(object.cast::<ObjectHandle>(), site, detail, read) }
 }
 
-/// A place where an object can lie on something.
+/// A contact candidate of an object: a point of its surface that can rest on a supporter.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_object_contact {
     /// sizeof(hangpose_object_contact), set by the caller.
     pub struct_size: u32,
-    /// x, y, z of a point on the surface, metres, in object coordinates.
+    /// x, y, z of the point on the surface, metres, in object coordinates.
     pub position: [f32; 3],
-    /// Unit vector out of the solid, in object coordinates.
+    /// x, y, z of the unit normal, out of the solid, in object coordinates.
     pub normal: [f32; 3],
-    /// Unit vector along the thin bar that the object catches best under the point, in object coordinates; its sign means
-    /// nothing.
+    /// x, y, z of the direction in which the object catches a thin bar under the point best: a unit vector in
+    /// object coordinates; the sign is arbitrary.
     pub bar_direction: [f32; 3],
-    /// How far such a bar must come down before it gets out sideways, metres; 0 if it is not caught.
+    /// Distance that this bar must move down before it can escape sideways, metres; 0 if it is not caught.
     pub capture: f32,
-    /// How far it is to the surface opposite, metres; infinite where there is none.
+    /// Distance to the opposite surface, metres; infinite if there is none.
     pub room: f32,
-    /// How far such a bar gets along its direction, on the side where it gets farther, metres; infinite where nothing stops it,
-    /// as in a hole.
+    /// Distance that this bar can extend along its direction before it meets the object, on the longer side,
+    /// metres; infinite if nothing stops it, as in a hole.
     pub passage: f32,
 }
 
@@ -243,7 +249,8 @@ unsafe impl Public for hangpose_object_contact {
     const NAME: &'static str = "contact";
 }
 
-/// Writes contact `index`, below hangpose_object_info.contacts, to `contact`; the one that catches best is 0.
+/// Writes contact candidate `index` to `contact`. `index` is less than hangpose_object_info.contacts; candidate 0
+/// has the greatest capture. Set contact->struct_size before the call. Returns HANGPOSE_OK, or an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_object_get_contact(
     object: *const hangpose_object,

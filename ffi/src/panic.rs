@@ -1,7 +1,7 @@
-//! The end of a panic, of which there should be none: everything is checked before the core sees it.
+//! The panic handler. No panic is expected, because all arguments are checked before they reach the core.
 
-/// Stops the program where it is, as a failed check in C would, so that a debugger or a core dump shows the place. A
-/// program without an operating system has no `abort` to call, so this is the processor's own.
+/// Stops the program at the panic, as a failed assertion in C does, so that a debugger or a core dump shows the
+/// place. A program without an operating system has no `abort`, so this uses the trap instruction of the processor.
 #[panic_handler]
 fn stop(_: &core::panic::PanicInfo) -> ! {
     // SAFETY: the instructions raise an exception and touch nothing.

@@ -5,7 +5,7 @@ use crate::status::*;
 use crate::version;
 use hangpose_core::{Candidates, CentreOfMass, Params};
 
-/// A set of defaults, one of HANGPOSE_PROFILE_*.
+/// A set of default constants, one of HANGPOSE_PROFILE_*.
 pub type hangpose_profile = u32;
 
 /// The library's own method.
@@ -13,77 +13,83 @@ pub const HANGPOSE_PROFILE_DEFAULT: hangpose_profile = 0;
 /// The published method with the constants of its Table I.
 pub const HANGPOSE_PROFILE_PAPER: hangpose_profile = 1;
 
-/// What the object's centre of mass is taken to be, one of HANGPOSE_CENTRE_OF_MASS_*.
+/// Source of the object's centre of mass, one of HANGPOSE_CENTRE_OF_MASS_*.
 pub type hangpose_centre_of_mass = u32;
 
-/// The mean of the surface samples: h_c of the paper's eq. (3).
+/// The mean of the surface samples: h_c of eq. (3).
 pub const HANGPOSE_CENTRE_OF_MASS_SAMPLE_MEAN: hangpose_centre_of_mass = 0;
-/// The centroid of the volume where the mesh is closed, the mean of the samples where it is not.
+/// The centroid of the volume if the mesh is closed, else the mean of the surface samples.
 pub const HANGPOSE_CENTRE_OF_MASS_VOLUME: hangpose_centre_of_mass = 1;
-/// hangpose_params.given_centre_of_mass.
+/// The point hangpose_params.given_centre_of_mass.
 pub const HANGPOSE_CENTRE_OF_MASS_GIVEN: hangpose_centre_of_mass = 2;
 
-/// Where the poses come from that are looked at, one of HANGPOSE_CANDIDATES_*.
+/// Source of the candidate poses, one of HANGPOSE_CANDIDATES_*.
 pub type hangpose_candidates = u32;
 
-/// Every hanging site on every support site, as the paper matches them: section II-D.
+/// Every hanging site of the object on every support site, as the paper matches them: section II-D.
 pub const HANGPOSE_CANDIDATES_SITES: hangpose_candidates = 0;
-/// Every place of the object that can lie on something on every place of the supporter that can carry something.
+/// Every contact candidate of the object on every contact candidate of the supporter.
 pub const HANGPOSE_CANDIDATES_CONTACTS: hangpose_candidates = 1;
 
-/// The constants of the method, with the paper's symbols. Set them with hangpose_params_init, and then change single
-/// ones. Every call that takes them checks each against its range.
+/// The constants of the method, with the symbols of the paper. Set the struct with hangpose_params_init, then
+/// change single fields. Every call that takes it checks each field against its range, which stands at the end of
+/// the comment of the field.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_params {
     /// sizeof(hangpose_params), set by hangpose_params_init.
     pub struct_size: u32,
-    /// The centre of mass that the method works with, one of HANGPOSE_CENTRE_OF_MASS_*.
+    /// Source of the centre of mass, one of HANGPOSE_CENTRE_OF_MASS_*.
     pub centre_of_mass: hangpose_centre_of_mass,
     /// Seed of the surface samples.
     pub seed: u64,
-    /// x, y, z of the direction in which things fall, in supporter coordinates; any length but zero.
+    /// x, y, z of the direction of gravity in supporter coordinates; any length but zero.
     pub gravity: [f32; 3],
     /// x, y, z of the centre of mass, metres, in object coordinates; used with HANGPOSE_CENTRE_OF_MASS_GIVEN.
     pub given_centre_of_mass: [f32; 3],
 
-    /// N: points sampled from the object's surface; 100 to 500000.
+    /// N: number of points sampled from the surface of the object; 100 to 500000.
     pub samples: u32,
-    /// alpha_h: least cosine between an object point's normal and its direction to the centre of mass, eq. (3); 0 to 1.
+    /// alpha_h: least cosine between the normal of an object point and its direction to the centre of mass,
+    /// eq. (3); 0 to 1.
     pub object_contact_cosine: f32,
-    /// Radius of the mean shift's flat kernel, as a fraction of the bounding box's diagonal; 0.001 to 1.
+    /// Radius of the flat mean-shift kernel, as a fraction of the diagonal of the bounding box; 0.001 to 1.
     pub cluster_bandwidth: f32,
     /// l_c: object clusters of this many points or fewer are dropped, eq. (4); 0 to 500000.
     pub min_cluster_points: u32,
-    /// N_h: positions tried between a contact point and the surface opposite, for the free space; 2 to 1000.
+    /// N_h: number of positions tried for the free space between a contact point and the opposite surface;
+    /// 2 to 1000.
     pub free_space_steps: u32,
     /// r_alpha: least free-space radius, metres; 0 to 1.
     pub min_free_space_radius: f32,
-    /// N_p: hanging directions tried at an object site; 1 to 720.
+    /// N_p: number of hanging directions tried at an object site; 1 to 720.
     pub object_directions: u32,
-    /// N_r: rays cast around each of those directions; 3 to 720.
+    /// N_r: number of rays cast around each hanging direction; 3 to 720.
     pub rays_per_direction: u32,
-    /// alpha_1: least share of the rays above the hanging position that must hit the object, eq. (6); 0 to 1.
+    /// alpha_1: least fraction of the rays above the hanging position that must hit the object, eq. (6); 0 to 1.
     pub min_encircled_above: f32,
-    /// alpha_2: the same for the rays below it.
+    /// alpha_2: least fraction of the rays below the hanging position that must hit the object, eq. (6); 0 to 1.
     pub min_encircled_below: f32,
-    /// r_beta: object sites whose free-space radii differ by less than this fraction may be merged, eq. (7); 0 to 1.
+    /// r_beta: relative difference of the free-space radii below which two object sites may be merged, eq. (7);
+    /// 0 to 1.
     pub similar_radius: f32,
-    /// beta: ... if the cosine between their hanging directions is above this, eq. (7); 0 to 1.
+    /// beta: cosine between the hanging directions above which two object sites of similar radius are merged,
+    /// eq. (7); 0 to 1.
     pub similar_direction: f32,
 
-    /// alpha_s: least cosine between a supporter point's normal and up, section II-C; 0 to 1.
+    /// alpha_s: least cosine between the normal of a supporter point and up, section II-C; 0 to 1.
     pub supporter_contact_cosine: f32,
-    /// M_s: directions in which the supporter is sliced at each site; 1 to 720.
+    /// M_s: number of directions in which the supporter is sliced at each site; 1 to 720.
     pub supporter_directions: u32,
     /// d_l: half the thickness of a slice, metres; 0.00001 to 1.
     pub slice_half_thickness: f32,
-    /// Points of a slice closer than this, metres, belong together; 0.00001 to 1.
+    /// Distance below which two points of a slice are linked into one cross-section, metres; 0.00001 to 1.
     pub slice_link_distance: f32,
 
-    /// alpha_m: pairs whose free-space radius is below this times the support radius are dropped; 0 to 1.
+    /// alpha_m: least ratio of free-space radius to support radius; pairs of sites below it are dropped; 0 to 1.
     pub radius_ratio: f32,
-    /// Poses that put more than this fraction of the supporter's points inside the object are dropped; 0 to 1.
+    /// Greatest fraction of the supporter points that may lie inside the object; poses above it are dropped;
+    /// 0 to 1.
     pub max_collision: f32,
     /// gamma_1: weight of the collision cost S_c, eq. (11); 0 to 1.
     pub collision_weight: f32,
@@ -92,24 +98,27 @@ pub struct hangpose_params {
     /// gamma_3: weight of the contact-area cost S_a, eq. (11); 0 to 1.
     pub contact_area_weight: f32,
 
-    /// Where poses come from, one of HANGPOSE_CANDIDATES_*. All above from cluster_bandwidth on is for
-    /// HANGPOSE_CANDIDATES_SITES.
+    /// Source of the candidate poses, one of HANGPOSE_CANDIDATES_*. The fields from object_contact_cosine to
+    /// contact_area_weight apply to HANGPOSE_CANDIDATES_SITES only.
     pub candidates: hangpose_candidates,
-    /// 1 where gravity acts before the answer is given, so that only what comes to rest, and stays, is a pose; else 0.
+    /// 1 to simulate the release of each pose under gravity and return only poses from which the object comes to
+    /// rest and stays; 0 to return poses without this test.
     pub settle: u32,
-    /// Coulomb's coefficient of friction between object and supporter; 0 to 2.
+    /// Coulomb friction coefficient between object and supporter; 0 to 2.
     pub friction: f32,
-    /// How far off the supporter the object is let go, metres, where there is room for that; 0 to 0.01.
+    /// Distance between object and supporter at release, metres, where there is room for it; 0 to 0.01.
     pub clearance: f32,
-    /// Nodes of the object's signed distance field at most; 0 to 10000000, at least 1 for `settle` and for
-    /// HANGPOSE_CANDIDATES_CONTACTS.
+    /// Greatest number of nodes of the object's signed distance field; 0 to 10000000, at least 1 if `settle` is 1
+    /// or with HANGPOSE_CANDIDATES_CONTACTS.
     pub voxels: u32,
-    /// Poses that are let go at most while none stays; once one does, no more than a quarter of that in all; 0 to 10000.
+    /// Greatest number of poses that are released while none stays. Once one stays, a quarter of this number is the
+    /// limit. 0 to 10000.
     pub settle_attempts: u32,
-    /// No more poses are let go when so many stayed firmly, with a probability of 97.5 % or more, be it twice in the same place; more
-    /// give more different poses to choose from; 0 to 10000.
+    /// Number of firm releases that ends the search. A release is firm if its rest pose has a probability of 97.5 %
+    /// or more; two releases to the same rest pose count twice. A larger number gives more different poses to
+    /// choose from. 0 to 10000.
     pub firm_enough: u32,
-    /// Poses that are less likely to hang than this are none; 0 to 1.
+    /// Least probability that the object hangs; poses below it are dropped; 0 to 1.
     pub min_probability: f32,
 }
 
@@ -118,8 +127,8 @@ unsafe impl Public for hangpose_params {
     const NAME: &'static str = "params";
 }
 
-/// Sets all of `params`. `struct_size` is sizeof(hangpose_params), `abi_version` is HANGPOSE_ABI_VERSION, `profile` one
-/// of HANGPOSE_PROFILE_*.
+/// Sets all fields of `params` to the defaults of `profile`, one of HANGPOSE_PROFILE_*. `struct_size` is
+/// sizeof(hangpose_params), `abi_version` is HANGPOSE_ABI_VERSION. Returns HANGPOSE_OK, or an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_params_init(
     params: *mut hangpose_params,
@@ -147,7 +156,7 @@ pub unsafe extern "C" fn hangpose_params_init(
 }
 
 impl hangpose_params {
-    /// No field is left out, or this does not compile.
+    /// Destructures every field, so that a new one cannot be forgotten.
     pub(crate) fn from_core(params: &Params) -> Self {
         let &Params {
             seed,
@@ -229,7 +238,7 @@ impl hangpose_params {
         }
     }
 
-    /// The params as the core takes them, each in its range.
+    /// The params as the core takes them, each checked against its range.
     pub(crate) fn to_core(self) -> Result<Params, Failure> {
         let centre_of_mass = match self.centre_of_mass {
             HANGPOSE_CENTRE_OF_MASS_SAMPLE_MEAN => CentreOfMass::SampleMean,
@@ -305,7 +314,7 @@ mod tests {
         }
     }
 
-    /// The ranges in the comments above, by the core's own checks.
+    /// The core checks the ranges in the comments above.
     #[test]
     fn what_is_out_of_range_is_named() {
         let mut params = hangpose_params::from_core(&Params::default());

@@ -3,98 +3,102 @@ use hangpose_core::hanging::HangingPose;
 use hangpose_core::hanging::sites::{Cost, SiteMatch};
 use hangpose_core::mechanics::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
 
-/// Directions in which gravity is tilted.
+/// Number of directions in which gravity is tilted.
 pub const HANGPOSE_DIRECTIONS: usize = 8;
-/// Contacts that a pose tells of, at most.
+/// Greatest number of contacts in a pose.
 pub const HANGPOSE_MAX_CONTACTS: usize = 8;
 
 const _: () = assert!(HANGPOSE_DIRECTIONS == DIRECTIONS && HANGPOSE_MAX_CONTACTS == MAX_CONTACTS);
 
-/// A place where the supporter bears the object, in supporter coordinates. A part of hangpose_pose.
+/// A contact at which the supporter carries the object, in supporter coordinates. Part of hangpose_pose.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_contact {
-    /// x, y, z, metres.
+    /// x, y, z of the contact, metres.
     pub position: [f32; 3],
-    /// Unit vector in which the supporter pushes.
+    /// x, y, z of the contact normal: the unit vector in which the supporter pushes.
     pub normal: [f32; 3],
-    /// How hard it pushes along it, in multiples of the object's weight.
+    /// Normal force, in multiples of the object's weight.
     pub force: f32,
 }
 
-/// By how much an object stays up. A part of hangpose_pose.
+/// Stability margins of a rest pose. Part of hangpose_pose.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_margin {
-    /// How far gravity may tilt, radians, with 70 % of the friction, towards each of eight horizontal directions: the first is the
-    /// supporter's x axis (or its y axis, where gravity is along x, made perpendicular to gravity), the others follow
-    /// counter-clockwise seen from above.
+    /// Tilt of gravity, radians, that the object survives in each of eight horizontal directions, with 70 % of the
+    /// friction. The first direction is the supporter's x axis, made perpendicular to gravity (the y axis if
+    /// gravity is along x); the others follow counter-clockwise seen from above. At most 1.2, where the test ends;
+    /// 0 for directions that were not tried because the tilt in another direction is hopeless.
     pub tilts: [f32; HANGPOSE_DIRECTIONS],
-    /// The least of the tilts, radians.
+    /// Least of the tilts, radians.
     pub least_tilt: f32,
-    /// How long it stays, seconds, when gravity tilts by 21.8 degrees at once, towards where it survives the least tilt, and
-    /// nothing but friction stops its swing; 1 if it is still there then, 0 if that was not tried, because some tilt is hopeless.
+    /// Time that the object stays, seconds, after gravity tilts by 21.8 degrees at once in the direction of the
+    /// least tilt, while only friction damps its swing. 1 if it is still there after 1 s; 0 if the test was skipped
+    /// because the tilt in some direction is hopeless.
     pub jolt_time: f32,
-    /// How far the centre of mass sank at most, metres, while gravity tilted by up to 0.9 radians: what comes to lie deeper when it is
-    /// shaken does not lie firmly where it is.
+    /// Greatest distance that the centre of mass sank, metres, while gravity tilted by up to 0.9 radians. An object
+    /// that settles deeper when it is shaken does not rest firmly.
     pub tilted_sinking: f32,
-    /// The least rise of the centre of mass, metres, over the ways of escape that were found, and the highest rise seen
-    /// where none was found.
+    /// Least rise of the centre of mass, metres, over the escape paths that were found; the greatest rise seen if
+    /// no escape was found.
     pub escape_rise: f32,
-    /// The same over the distance from the contacts to the centre of mass; no unit.
+    /// escape_rise divided by the distance from the contacts to the centre of mass; no unit.
     pub escape_ratio: f32,
-    /// The speed of a knock that would carry the centre of mass over that rise, m/s.
+    /// Speed of a knock that would carry the centre of mass over escape_rise, metres per second.
     pub knock_speed: f32,
-    /// How far the centre of mass may be from where it was taken to be, metres.
+    /// Distance that the true centre of mass may be away from the assumed one, metres.
     pub centre_of_mass_radius: f32,
 }
 
-/// A pose in which the object hangs: where to let it go, what gravity then makes of it, and which sites it joins.
+/// A pose in which the object hangs: the release pose, the rest pose to which gravity then takes the object, and
+/// the sites that it matches.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_pose {
     /// sizeof(hangpose_pose), set by the library.
     pub struct_size: u32,
-    /// Where to let the object go: x, y, z of its origin, metres, in supporter coordinates.
+    /// Release pose: x, y, z of the origin of the object, metres, in supporter coordinates.
     pub position: [f32; 3],
-    /// x, y, z, w of the unit quaternion that turns object coordinates into supporter coordinates.
+    /// Release pose: x, y, z, w of the unit quaternion that rotates object coordinates into supporter coordinates.
     pub quaternion: [f32; 4],
 
-    /// 1 with hangpose_params.settle; else 0, and all from here to `contacts` is NaN or 0.
+    /// 1 with hangpose_params.settle. Else 0, and all fields from here to `contacts` are NaN or 0.
     pub has_rest: u32,
-    /// The probability that it hangs and stays.
+    /// Probability that the object hangs and stays, 0 to 1.
     pub probability: f32,
-    /// Where the object comes to rest: x, y, z of its origin, metres, in supporter coordinates.
+    /// Rest pose: x, y, z of the origin of the object, metres, in supporter coordinates.
     pub rest_position: [f32; 3],
-    /// x, y, z, w of the unit quaternion that turns object coordinates into supporter coordinates there.
+    /// Rest pose: x, y, z, w of the unit quaternion that rotates object coordinates into supporter coordinates.
     pub rest_quaternion: [f32; 4],
-    /// How far the centre of mass sinks from the release to there, metres.
+    /// Distance that the centre of mass sinks from the release pose to the rest pose, metres.
     pub sinking: f32,
-    /// How far the object is off the supporter where it is let go, metres: hangpose_params.clearance, or less where there
-    /// is no room.
+    /// Distance between object and supporter in the release pose, metres: hangpose_params.clearance, or less if
+    /// there is no room.
     pub clearance: f32,
-    /// By how much it stays.
+    /// Stability margins of the rest pose.
     pub margin: hangpose_margin,
-    /// How many of the contacts there are; the others are 0.
+    /// Number of valid contacts; the others are 0.
     pub contact_count: u32,
-    /// Where the supporter bears the object at rest.
+    /// Contacts at which the supporter carries the object in the rest pose.
     pub contacts: [hangpose_contact; HANGPOSE_MAX_CONTACTS],
 
-    /// 1 with HANGPOSE_CANDIDATES_SITES; else 0, and all from here on is HANGPOSE_NO_INDEX, NaN or 0.
+    /// 1 with HANGPOSE_CANDIDATES_SITES. Else 0, and all fields from here on are HANGPOSE_NO_INDEX, NaN or 0.
     pub is_matched: u32,
     /// Index of the hanging site, for hangpose_object_get_site.
     pub object_site: u32,
     /// Index of the support site, for hangpose_supporter_get_site.
     pub support_site: u32,
-    /// 1 where the object's hanging direction is laid against the supporter's, 0 where it is laid along it.
+    /// 1 if the hanging direction of the object is opposite to that of the supporter, 0 if it is the same.
     pub is_reversed: u32,
-    /// S_c: points of the supporter inside the object, eq. (8).
+    /// S_c: number of supporter points inside the object, eq. (8).
     pub collision: u32,
-    /// S_b: how far the hanging position is from the middle of the supporter, from 0.5 to 1, eq. (9).
+    /// S_b: distance of the hanging position from the middle of the supporter, from 0.5 in the middle to 1 at the
+    /// boundary, eq. (9).
     pub boundary: f32,
-    /// S_a: how small the contact area is against the object's largest, from 0 to 1, eq. (10).
+    /// S_a: 0 to 1, larger for a smaller contact area relative to the largest of the object, eq. (10).
     pub contact_area: f32,
-    /// S_total: the weighted sum of the three, eq. (11); less is better.
+    /// S_total: weighted sum of S_c, S_b and S_a, eq. (11); lower is better.
     pub total: f32,
 }
 
@@ -139,7 +143,7 @@ impl From<&HangingPose> for hangpose_pose {
 }
 
 impl hangpose_pose {
-    /// Without rest and without match.
+    /// A pose without rest and without match.
     const NEITHER: Self = {
         const NAN: f32 = f32::NAN;
         Self {

@@ -15,49 +15,51 @@ use hangpose_core::hanging::contacts::CandidateCounts;
 use hangpose_core::hanging::sites::MatchingCounts;
 use hangpose_core::hanging::{HangingPose, Prediction, SearchCounts, SettlingCounts, predict, predict_bytes};
 
-/// What hangpose_predict found beside the poses: what was left after each step of the method, and what it took.
+/// Result of hangpose_predict beside the poses: the number of candidates left after each step of the method, and
+/// the work done. The fields matching_* are 0 with HANGPOSE_CANDIDATES_CONTACTS.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_prediction {
     /// sizeof(hangpose_prediction), set by the caller.
     pub struct_size: u32,
-    /// How many poses were written.
+    /// Number of poses written.
     pub pose_count: u32,
-    /// Why there are none, one of HANGPOSE_STAGE_*; for people: hangpose_stage_string.
+    /// The step that left no pose, one of HANGPOSE_STAGE_*; hangpose_stage_string gives a text.
     pub stage: hangpose_stage,
-    /// HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT where this call or the analysis of its models ended early, or
-    /// HANGPOSE_OK.
+    /// HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT if this call or the analysis of one of its models ended early,
+    /// else HANGPOSE_OK.
     pub stopped: hangpose_status,
-    /// With HANGPOSE_CANDIDATES_SITES, pairs of an object site and a support site.
+    /// With HANGPOSE_CANDIDATES_SITES: number of pairs of a hanging site and a support site.
     pub matching_pairs: u32,
-    /// Pairs where the support fits into the free space.
+    /// Number of pairs in which the support fits into the free space.
     pub matching_fitting: u32,
-    /// Poses, two a fitting pair, found with no more collisions than allowed; those that others were sure to outrank are
-    /// not counted.
+    /// Number of poses, two for each fitting pair, with no more collisions than allowed. Poses that are certain to
+    /// be outranked are neither completed nor counted.
     pub matching_clear: u32,
-    /// With HANGPOSE_CANDIDATES_CONTACTS, poses that lay a contact of the object on one of the supporter.
+    /// With HANGPOSE_CANDIDATES_CONTACTS: number of poses that bring a contact candidate of the object onto one of
+    /// the supporter.
     pub settling_candidates: u32,
-    /// Those that are clear of the supporter.
+    /// Number of these candidates that are clear of the supporter, or could be moved clear of it.
     pub settling_clear: u32,
-    /// Poses that were let go.
+    /// Number of poses whose release was simulated.
     pub settling_released: u32,
-    /// Of these, those that rotated off,
+    /// Number of releases after which the object rotated off.
     pub settling_rotated_off: u32,
-    /// slid off or fell through,
+    /// Number of releases after which the object slid off or fell through.
     pub settling_slid_off: u32,
-    /// or still moved after three seconds.
+    /// Number of releases after which the object still moved after 3 s.
     pub settling_moving: u32,
-    /// Those that came to rest.
+    /// Number of releases after which the object came to rest.
     pub settling_at_rest: u32,
-    /// Of these, those that would not come off again.
+    /// Number of releases after which the object came to rest but is wedged: it would not come off again.
     pub settling_wedged: u32,
-    /// Different rests that are probable enough to be given.
+    /// Number of different rest poses with at least hangpose_params.min_probability.
     pub settling_probable: u32,
-    /// Releases that came to one of them that needs no better ones beside it.
+    /// Number of firm releases, see hangpose_params.firm_enough.
     pub settling_firm: u32,
-    /// Rays cast.
+    /// Number of rays cast.
     pub rays: u64,
-    /// Distance and inside-outside queries made.
+    /// Number of distance and inside-outside queries.
     pub distance_queries: u64,
 }
 
@@ -71,18 +73,22 @@ unsafe impl Public for hangpose_pose {
     const NAME: &'static str = "poses";
 }
 
-/// Bytes for `count` of the core's poses, wherever the memory begins.
+/// Bytes for `count` poses of the core in memory that begins at any address.
 pub(crate) fn pose_bytes(count: u32) -> usize {
     size_of::<HangingPose>().saturating_mul(count as usize).saturating_add(align_of::<HangingPose>() - 1)
 }
 
-/// Finds poses in which an object hangs on a supporter and writes the best to `poses`, best first, at most `pose_capacity`,
-/// which is at least 1; more room may take more time. Both must have been analysed with the same `params`. `pose_size`
-/// is sizeof(hangpose_pose). `memory` takes hangpose_predict_bytes and is needed during the call only. `monitor` may be
-/// null.
+/// Finds poses in which `object` hangs on `supporter` and writes the best to `poses`, best first. Both models must
+/// have been analysed with these `params`.
 ///
-/// HANGPOSE_OK with at least one pose; HANGPOSE_REJECTED, and `prediction->stage` says why; HANGPOSE_CANCELLED or
-/// HANGPOSE_WORK_LIMIT with the best poses until then, or none.
+/// `memory` is working memory of at least hangpose_predict_bytes, needed during the call only. `monitor` may be
+/// null. `poses` is an array of `pose_capacity` structs, at least 1; a larger capacity may take more time.
+/// `pose_size` is sizeof(hangpose_pose). Set prediction->struct_size before the call; prediction->pose_count is the
+/// number of poses written. Concurrent calls may share the models and `params`, and need their own `memory`,
+/// `poses`, `prediction` and `detail`.
+///
+/// Returns HANGPOSE_OK with at least one pose; HANGPOSE_REJECTED with none, and prediction->stage gives the reason;
+/// HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT with the best poses found so far, possibly none; or an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_predict(
     object: *const hangpose_object,
@@ -145,7 +151,8 @@ pub unsafe extern "C" fn hangpose_predict(
     unsafe { report(detail, call) }
 }
 
-/// Room at the front of `memory` for the core's poses, which are not C's, and the `others` or more bytes behind it.
+/// Splits `memory` into `count` poses of the core, whose layout is not that of C, and the rest, of at least
+/// `others` bytes.
 fn pose_slots(
     memory: &mut [u8],
     count: u32,
@@ -162,10 +169,10 @@ fn pose_slots(
     let (front, rest) = memory[skip..].split_at_mut(size_of::<HangingPose>() * count as usize);
     let first = front.as_mut_ptr().cast::<HangingPose>();
     for index in 0..count as usize {
-        // SAFETY: aligned, and within the bytes that were just counted.
+        // SAFETY: aligned, and within the bytes counted above.
         unsafe { first.add(index).write(HangingPose::default()) };
     }
-    // SAFETY: all of them were written just now, and the memory is borrowed for as long as they are.
+    // SAFETY: all of them are initialised, and the memory is borrowed as long as they are.
     Ok((unsafe { core::slice::from_raw_parts_mut(first, count as usize) }, rest))
 }
 

@@ -6,15 +6,16 @@ use crate::status::*;
 use core::ffi::c_void;
 use hangpose_core::perception::sampling;
 
-/// Bytes of memory for drawing `count` samples.
+/// Returns the bytes of working memory that hangpose_mesh_sample needs for `count` samples.
 #[unsafe(no_mangle)]
 pub extern "C" fn hangpose_sample_bytes(count: u32) -> usize {
     sampling::sample_bytes(count as usize)
 }
 
-/// Draws `count` points, evenly spread, and their normals from a mesh, for a supporter that is known as a mesh.
-/// `points` and `normals` hold `count` rows of x, y, z; metres, in the mesh's coordinates. `memory` takes
-/// hangpose_sample_bytes and is needed during the call only. The same seed gives the same samples.
+/// Samples `count` evenly spread points, 1 to 500000, and their normals from a mesh: the cloud of a supporter whose
+/// mesh is known. `points` and `normals` are arrays of `count` rows of x, y, z: metres and unit vectors, in the
+/// coordinates of the mesh. `memory` is working memory of at least hangpose_sample_bytes, needed during the call
+/// only. The same seed gives the same samples. Returns HANGPOSE_OK, or an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_mesh_sample(
     mesh: *const hangpose_mesh,

@@ -2,75 +2,76 @@ use core::ffi::{CStr, c_char};
 use hangpose_core::Stop;
 use hangpose_core::hanging::Stage;
 
-/// What became of a call. 0: done. Above 0: a good answer that is not, or not only, poses. Below 0: the caller's
-/// mistake; nothing was done, and hangpose_detail says what to mend.
+/// Result of a call. 0: done. Above 0: a valid result that is not, or not only, poses. Below 0: an error of the
+/// caller; the call did nothing, and hangpose_detail says what to correct.
 pub type hangpose_status = i32;
 
-/// Done.
+/// The call is done.
 pub const HANGPOSE_OK: hangpose_status = 0;
-/// Nothing hangs; hangpose_prediction.stage says which step left nothing.
+/// No pose was found in which the object hangs; hangpose_prediction.stage names the step of the method that left
+/// none.
 pub const HANGPOSE_REJECTED: hangpose_status = 1;
-/// hangpose_monitor_cancel was called. hangpose_predict still gives the best poses until then; an analysis that was
-/// cancelled gives no model.
+/// hangpose_monitor_cancel was called. hangpose_predict returns the best poses found so far; a cancelled analysis
+/// creates no model.
 pub const HANGPOSE_CANCELLED: hangpose_status = 2;
-/// The monitor's work limit was reached, in this call or when one of its models was made. What was found until then is
-/// there.
+/// The work limit of the monitor was reached, in this call or in the analysis of one of its models. The results
+/// found so far are returned.
 pub const HANGPOSE_WORK_LIMIT: hangpose_status = 3;
 
-/// A pointer that must lead somewhere is null.
+/// A required pointer is null.
 pub const HANGPOSE_ERROR_NULL: hangpose_status = -1;
-/// A pointer is not aligned for what it leads to. Memory for models and work may begin anywhere.
+/// A pointer is not aligned for its type. Memory for models and work may begin at any address.
 pub const HANGPOSE_ERROR_MISALIGNED: hangpose_status = -2;
-/// A struct_size is not the size of that struct: it was not set, or the program was compiled with another header.
+/// A struct_size is not the size of its struct: it was not set, or the program was compiled with another header.
 pub const HANGPOSE_ERROR_STRUCT_SIZE: hangpose_status = -3;
-/// The program was compiled with the header of another library.
+/// The program was compiled with the header of another version of the library.
 pub const HANGPOSE_ERROR_ABI_VERSION: hangpose_status = -4;
-/// The memory is smaller than its size query says.
+/// The memory is smaller than its size query requires.
 pub const HANGPOSE_ERROR_MEMORY: hangpose_status = -5;
-/// Memory that the call writes overlaps something else that it was given.
+/// Memory that the call writes overlaps another argument.
 pub const HANGPOSE_ERROR_OVERLAP: hangpose_status = -6;
-/// A handle or a monitor was never made, was moved, or was overwritten.
+/// A model or a monitor was never created, was moved, or was overwritten.
 pub const HANGPOSE_ERROR_HANDLE: hangpose_status = -7;
-/// A supporter is in use in another thread and cannot be updated, or is being updated and cannot be used.
+/// The supporter cannot be updated while another thread uses it, or cannot be used while another thread updates it.
 pub const HANGPOSE_ERROR_BUSY: hangpose_status = -8;
-/// A supporter is empty, because its last update was cancelled.
+/// The supporter is empty because its last update was cancelled.
 pub const HANGPOSE_ERROR_EMPTY: hangpose_status = -9;
-/// There are none, or more than the most that are possible.
+/// A count is zero or above its maximum.
 pub const HANGPOSE_ERROR_COUNT: hangpose_status = -10;
-/// A number is out of its range, infinite or not a number.
+/// A number is outside its range, infinite or not a number.
 pub const HANGPOSE_ERROR_VALUE: hangpose_status = -11;
-/// An index names something that does not exist.
+/// An index refers to an element that does not exist.
 pub const HANGPOSE_ERROR_INDEX: hangpose_status = -12;
-/// No triangle of the mesh has an area.
+/// Every triangle of the mesh has zero area.
 pub const HANGPOSE_ERROR_DEGENERATE: hangpose_status = -13;
-/// The params ask to let the object go, but it was analysed without voxels.
+/// The params require a signed distance field, but the object was analysed with voxels = 0.
 pub const HANGPOSE_ERROR_NO_DISTANCE_FIELD: hangpose_status = -14;
 
-/// The step of the method that left nothing to hang, one of HANGPOSE_STAGE_*.
+/// The step of the method that left no pose, one of HANGPOSE_STAGE_*.
 pub type hangpose_stage = u32;
 
-/// None: there are poses, or the search was stopped.
+/// No step: there are poses, or the search was stopped.
 pub const HANGPOSE_STAGE_NONE: hangpose_stage = 0;
-/// Nowhere does the object's surface face its centre of mass, or only in specks.
+/// No part of the object's surface faces its centre of mass, or the parts that do are too small.
 pub const HANGPOSE_STAGE_NO_CONTACT_POINTS: hangpose_stage = 1;
-/// There is no room beside the object's contact points for a supporter.
+/// The object has no free space for a supporter beside its contact points.
 pub const HANGPOSE_STAGE_NO_FREE_SPACE: hangpose_stage = 2;
-/// The free spaces are open to the side, so that a supporter would slip out.
+/// The free spaces are open to the side, so a supporter would slip out.
 pub const HANGPOSE_STAGE_NOT_ENCIRCLED: hangpose_stage = 3;
-/// Nothing on the supporter faces up and holds together.
+/// No part of the supporter faces up and holds together.
 pub const HANGPOSE_STAGE_NO_SUPPORT: hangpose_stage = 4;
 /// The supporter is too thick for every free space of the object.
 pub const HANGPOSE_STAGE_TOO_THICK: hangpose_stage = 5;
-/// Every pose runs the supporter through the object.
+/// The supporter penetrates the object in every pose.
 pub const HANGPOSE_STAGE_ALL_COLLIDE: hangpose_stage = 6;
-/// Let go, the object turns and falls off, or most often does.
+/// The released object rotates off the supporter, in all or most of the tried poses.
 pub const HANGPOSE_STAGE_ROTATES_OFF: hangpose_stage = 7;
-/// Let go, the object slides off or falls through, or most often does.
+/// The released object slides off or falls through, in all or most of the tried poses.
 pub const HANGPOSE_STAGE_SLIDES_OFF: hangpose_stage = 8;
-/// Let go, the object does not come to rest.
+/// The released object does not come to rest.
 pub const HANGPOSE_STAGE_NEVER_RESTS: hangpose_stage = 9;
-/// The object comes to rest, but a nudge would bring it down, it would not come off again, or there is no room to put it
-/// there.
+/// The object comes to rest, but a nudge would bring it down, it is wedged and would not come off again, or there
+/// is no room to release it there.
 pub const HANGPOSE_STAGE_TOO_LOOSE: hangpose_stage = 10;
 
 pub(crate) fn stage(stage: Stage) -> hangpose_stage {
@@ -88,7 +89,7 @@ pub(crate) fn stage(stage: Stage) -> hangpose_stage {
     }
 }
 
-/// HANGPOSE_OK where nothing stopped the call.
+/// HANGPOSE_OK if nothing stopped the call.
 pub(crate) fn stopped(stop: Option<Stop>) -> hangpose_status {
     match stop {
         None => HANGPOSE_OK,
@@ -97,13 +98,13 @@ pub(crate) fn stopped(stop: Option<Stop>) -> hangpose_status {
     }
 }
 
-/// What a status means, in English; never null, lives for ever.
+/// Returns the meaning of a status in English; a static string, never null.
 #[unsafe(no_mangle)]
 pub extern "C" fn hangpose_status_string(status: hangpose_status) -> *const c_char {
     status_text(status).as_ptr()
 }
 
-/// What a stage means, in English; never null, lives for ever.
+/// Returns the meaning of a stage in English; a static string, never null.
 #[unsafe(no_mangle)]
 pub extern "C" fn hangpose_stage_string(stage: hangpose_stage) -> *const c_char {
     stage_text(stage).as_ptr()
@@ -118,22 +119,22 @@ pub(crate) fn status_text(status: hangpose_status) -> &'static CStr {
         HANGPOSE_ERROR_NULL => c"a pointer is null",
         HANGPOSE_ERROR_MISALIGNED => c"a pointer is misaligned",
         HANGPOSE_ERROR_STRUCT_SIZE => c"a struct_size is wrong",
-        HANGPOSE_ERROR_ABI_VERSION => c"the header is of another version than the library",
+        HANGPOSE_ERROR_ABI_VERSION => c"the header and the library have different versions",
         HANGPOSE_ERROR_MEMORY => c"the memory is too small",
-        HANGPOSE_ERROR_OVERLAP => c"memory overlaps",
+        HANGPOSE_ERROR_OVERLAP => c"arguments overlap in memory",
         HANGPOSE_ERROR_HANDLE => c"a handle is not valid",
-        HANGPOSE_ERROR_BUSY => c"in use in another thread",
+        HANGPOSE_ERROR_BUSY => c"the supporter is in use by another thread",
         HANGPOSE_ERROR_EMPTY => c"the supporter is empty",
         HANGPOSE_ERROR_COUNT => c"a count is out of range",
         HANGPOSE_ERROR_VALUE => c"a value is out of range",
         HANGPOSE_ERROR_INDEX => c"an index is out of range",
-        HANGPOSE_ERROR_DEGENERATE => c"no triangle has an area",
+        HANGPOSE_ERROR_DEGENERATE => c"every triangle has zero area",
         HANGPOSE_ERROR_NO_DISTANCE_FIELD => c"the object was analysed without voxels",
         _ => c"unknown status",
     }
 }
 
-/// The core's own words, with the NUL that C needs.
+/// The text of the core, with the NUL that C needs.
 pub(crate) fn stage_text(stage: hangpose_stage) -> &'static CStr {
     match stage {
         HANGPOSE_STAGE_NONE => c"nothing was rejected",

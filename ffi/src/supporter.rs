@@ -13,9 +13,9 @@ use hangpose_core::hanging::sites::SupporterCounts;
 use hangpose_core::hanging::{Supporter, SupporterPlaces};
 use hangpose_core::memory::Limits;
 
-/// A supporter, analysed, at the front of the memory that it was made in. There is nothing to free; the memory must stay
-/// where it is, and no one else may write to it, for as long as the supporter is used. Any number of threads may use it
-/// at once.
+/// An analysed supporter, at the front of the memory in which it was created. There is nothing to free. As long as
+/// it is used, its memory must not be moved and nobody else may write to it. Any number of threads may use it at
+/// the same time, except during hangpose_supporter_update.
 pub struct hangpose_supporter(#[allow(dead_code)] SupporterHandle);
 
 pub(crate) type SupporterHandle = Handle<Supporter<'static>>;
@@ -26,17 +26,19 @@ impl Model for Supporter<'static> {
     const MAKER: &'static str = "hangpose_supporter_create";
 }
 
-/// Bytes behind the handle for a cloud.
+/// Bytes behind the handle for the model of a cloud.
 fn model_bytes(cloud: &hangpose_cloud) -> usize {
     let points = cloud.point_count as usize;
     Supporter::bytes(&Limits::of_points(points))
 }
 
-/// Analyses `cloud` in `memory`, which takes hangpose_supporter_bytes for its size, and sets `supporter` to what it made
-/// there, or to null. Memory for more points makes room for later updates. `monitor` may be null.
+/// Analyses `cloud` in `memory` and sets `*supporter` to the result, which stays in `memory`. `memory_size` is at
+/// least hangpose_supporter_bytes for the size of `cloud`; memory for more points leaves room for later updates.
+/// `cloud`, its arrays and `params` are needed during the call only. `monitor` may be null.
 ///
-/// HANGPOSE_OK, or HANGPOSE_WORK_LIMIT with a supporter that may have more sites or contacts than were found;
-/// HANGPOSE_CANCELLED without one.
+/// Returns HANGPOSE_OK; HANGPOSE_WORK_LIMIT with a supporter that may have more sites or contact candidates than
+/// were found; HANGPOSE_CANCELLED or an error without a supporter. Initialise `*supporter` to null: without a
+/// supporter it is null or unchanged.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_supporter_create(
     memory: *mut c_void,
@@ -85,9 +87,11 @@ pub unsafe extern "C" fn hangpose_supporter_create(
     unsafe { report(detail, create) }
 }
 
-/// Analyses a new cloud in place of the supporter's old one. No other thread may use the supporter meanwhile; where one
-/// does, the answer is HANGPOSE_ERROR_BUSY. After an error the supporter is what it was; after HANGPOSE_CANCELLED it is
-/// empty, until an update goes through. `monitor` may be null.
+/// Replaces the cloud of `supporter` by a new one and analyses it in the same memory. `monitor` may be null. No
+/// other thread may use the supporter during the call; if one does, the call returns HANGPOSE_ERROR_BUSY.
+///
+/// Returns HANGPOSE_OK; HANGPOSE_WORK_LIMIT as hangpose_supporter_create does; HANGPOSE_CANCELLED, and the
+/// supporter is empty until an update succeeds; or an error, and the supporter is unchanged.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_supporter_update(
     supporter: *mut hangpose_supporter,
@@ -140,32 +144,32 @@ pub unsafe extern "C" fn hangpose_supporter_update(
     unsafe { report(detail, update) }
 }
 
-/// What the analysis of a supporter found.
+/// Result of the analysis of a supporter.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_supporter_info {
     /// sizeof(hangpose_supporter_info), set by the caller.
     pub struct_size: u32,
-    /// HANGPOSE_WORK_LIMIT where the search for sites or contacts ended early, HANGPOSE_OK where it did not.
+    /// HANGPOSE_WORK_LIMIT if the search for sites or contact candidates ended early, else HANGPOSE_OK.
     pub stopped: hangpose_status,
-    /// Points of the cloud.
+    /// Number of points of the cloud.
     pub points: u32,
-    /// Normals that were missing or zero, and were estimated from the neighbouring points.
+    /// Number of normals that were missing or zero and were estimated from the neighbouring points.
     pub normals_estimated: u32,
-    /// Normals that were not of unit length, and were scaled to it.
+    /// Number of normals that were not of unit length and were normalised.
     pub normals_renormalised: u32,
-    /// Points that face up, eq. (2).
+    /// Number of points that face up, eq. (2).
     pub contact_points: u32,
-    /// Clusters of them.
+    /// Number of clusters of contact points; 0 with HANGPOSE_CANDIDATES_CONTACTS.
     pub clusters: u32,
-    /// Clusters at which a slice through the supporter holds together: the support sites; 0 with
+    /// Number of support sites: clusters at which a slice through the supporter holds together; 0 with
     /// HANGPOSE_CANDIDATES_CONTACTS.
     pub sites: u32,
-    /// Places where something can lie on the supporter; 0 with HANGPOSE_CANDIDATES_SITES.
+    /// Number of contact candidates; 0 with HANGPOSE_CANDIDATES_SITES.
     pub contacts: u32,
-    /// Rays cast.
+    /// Number of rays cast.
     pub rays: u64,
-    /// Distance and inside-outside queries made.
+    /// Number of distance and inside-outside queries.
     pub distance_queries: u64,
 }
 
@@ -174,7 +178,8 @@ unsafe impl Public for hangpose_supporter_info {
     const NAME: &'static str = "info";
 }
 
-/// Writes what the analysis found to `info`.
+/// Writes the result of the analysis to `info`. Set info->struct_size before the call. Returns HANGPOSE_OK, or an
+/// error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_supporter_get_info(
     supporter: *const hangpose_supporter,
@@ -205,7 +210,7 @@ pub unsafe extern "C" fn hangpose_supporter_get_info(
     unsafe { get(supporter.cast::<SupporterHandle>(), info, detail, read) }
 }
 
-/// A place on a supporter that something can hang on.
+/// A support site: a cross-section of the supporter on which an object can hang.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_supporter_site {
@@ -213,15 +218,15 @@ pub struct hangpose_supporter_site {
     pub struct_size: u32,
     /// c_s: x, y, z of the centre of the cross-section, metres, in supporter coordinates.
     pub position: [f32; 3],
-    /// v_s: unit vector along which the cross-section is smallest, horizontal, in supporter coordinates; its sign means
-    /// nothing.
+    /// v_s: x, y, z of the horizontal unit vector along which the cross-section is smallest, in supporter
+    /// coordinates; the sign is arbitrary.
     pub hanging_direction: [f32; 3],
-    /// p_s: x, y, z of the contact point that the supporter was sliced at, metres, in supporter coordinates.
+    /// p_s: x, y, z of the contact point at which the supporter was sliced, metres, in supporter coordinates.
     pub contact_point: [f32; 3],
     /// r_s: radius of the sphere around the cross-section, metres.
     pub support_radius: f32,
-    /// d_1, d_2: distances from the position to the convex hull of the supporter along the hanging direction and against
-    /// it, metres.
+    /// d_1, d_2: distances from the position to the convex hull of the supporter along the hanging direction and
+    /// against it, metres.
     pub boundary_distances: [f32; 2],
 }
 
@@ -230,7 +235,8 @@ unsafe impl Public for hangpose_supporter_site {
     const NAME: &'static str = "site";
 }
 
-/// Writes support site `index`, below hangpose_supporter_info.sites, to `site`; the thinnest is 0.
+/// Writes support site `index` to `site`. `index` is less than hangpose_supporter_info.sites; site 0 is the
+/// thinnest. Set site->struct_size before the call. Returns HANGPOSE_OK, or an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_supporter_get_site(
     supporter: *const hangpose_supporter,
@@ -253,18 +259,18 @@ pub unsafe extern "C" fn hangpose_supporter_get_site(
     unsafe { get(supporter.cast::<SupporterHandle>(), site, detail, read) }
 }
 
-/// A place where something can lie on a supporter.
+/// A contact candidate of a supporter: a point on which an object can rest.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_supporter_contact {
     /// sizeof(hangpose_supporter_contact), set by the caller.
     pub struct_size: u32,
-    /// x, y, z of a point of the supporter, metres, in supporter coordinates.
+    /// x, y, z of the point, metres, in supporter coordinates.
     pub position: [f32; 3],
-    /// Unit vector out of the solid, in supporter coordinates.
+    /// x, y, z of the unit normal, out of the solid, in supporter coordinates.
     pub normal: [f32; 3],
-    /// Unit vector along which the supporter stretches around the point, in supporter coordinates; its sign means
-    /// nothing.
+    /// x, y, z of the unit vector along which the supporter extends around the point, in supporter coordinates; the
+    /// sign is arbitrary.
     pub bar_direction: [f32; 3],
 }
 
@@ -273,7 +279,8 @@ unsafe impl Public for hangpose_supporter_contact {
     const NAME: &'static str = "contact";
 }
 
-/// Writes contact `index`, below hangpose_supporter_info.contacts, to `contact`.
+/// Writes contact candidate `index` to `contact`. `index` is less than hangpose_supporter_info.contacts. Set
+/// contact->struct_size before the call. Returns HANGPOSE_OK, or an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_supporter_get_contact(
     supporter: *const hangpose_supporter,

@@ -1,4 +1,4 @@
-//! What is written in two places must be the same in both.
+//! Texts and versions that are written in two places must be the same in both.
 
 use std::fs::read_to_string;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! HANGPOSE_OBJECT_BYTES and its like in the header, held against the queries.
+//! Compares the macros HANGPOSE_*_BYTES of the header with the size queries.
 
 use hangpose_ffi::*;
 
@@ -12,7 +12,7 @@ const NONE: hangpose_limits = hangpose_limits {
     poses: 0,
 };
 
-/// A constant of the header.
+/// The value of a constant of the header.
 fn constant(name: &str) -> usize {
     let header = include_str!("../../include/hangpose.h");
     let line =
@@ -33,7 +33,7 @@ fn the_macros_never_give_less_than_the_queries() {
             + sample * limits.samples as usize
             + voxel * limits.voxels as usize
     };
-    // SAFETY: the limits are there.
+    // SAFETY: the pointer leads to valid limits.
     let needed = |limits: &hangpose_limits| unsafe { hangpose_object_bytes(limits) };
     for vertices in sizes {
         for triangles in sizes {
@@ -49,7 +49,7 @@ fn the_macros_never_give_less_than_the_queries() {
             }
         }
     }
-    // How much more than needed, for a mug and the default params.
+    // The macro gives less than 1.5 times the query, for a mug and the default params.
     let params = hangpose::Params::default();
     let (samples, voxels) = (params.samples as u32, params.voxels as u32);
     let mug = hangpose_limits { vertices: 3556, triangles: 7040, samples, voxels, ..NONE };
@@ -59,7 +59,7 @@ fn the_macros_never_give_less_than_the_queries() {
         ["AT_LEAST", "EACH_POINT"].map(|name| constant(&format!("HANGPOSE_SUPPORTER_BYTES_{name}")));
     for points in sizes {
         let given = at_least + point * points as usize;
-        // SAFETY: the limits are there.
+        // SAFETY: the pointer leads to valid limits.
         let needed = unsafe { hangpose_supporter_bytes(&hangpose_limits { points, ..NONE }) };
         assert!(
             (needed..needed + 4096 + needed / 20).contains(&given),
@@ -72,7 +72,7 @@ fn the_macros_never_give_less_than_the_queries() {
     for points in sizes {
         for poses in sizes {
             let given = at_least + point * points as usize + pose * poses as usize;
-            // SAFETY: the limits are there.
+            // SAFETY: the pointer leads to valid limits.
             let needed = unsafe { hangpose_predict_bytes(&hangpose_limits { points, poses, ..NONE }) };
             assert!(
                 (needed..needed + 4096).contains(&given),
@@ -94,7 +94,7 @@ fn limits_beyond_all_memory_do_not_wrap() {
         poses: most,
         ..NONE
     };
-    // SAFETY: the limits are there.
+    // SAFETY: the pointer leads to valid limits.
     unsafe {
         assert!(hangpose_object_bytes(&limits) > most as usize);
         assert!(hangpose_supporter_bytes(&limits) > most as usize);

@@ -1,5 +1,5 @@
-// What the calls of hangpose.hpp take and give: views of someone else's elements, memory, and results that
-// cannot be overlooked.
+// The argument and result types of hangpose.hpp: views of the caller's arrays, memory, errors and
+// [[nodiscard]] results.
 #ifndef HANGPOSE_VALUES_HPP
 #define HANGPOSE_VALUES_HPP
 
@@ -15,8 +15,8 @@
 
 namespace hangpose {
 
-// Elements of someone else's, as std::span has them: made of anything contiguous with data() and size(), of
-// an array, or of a pointer and a count.
+// A view of contiguous elements that it does not own, like std::span: made from a container with data() and
+// size(), from an array, or from a pointer and a count.
 template <class T>
 class view {
  public:
@@ -42,22 +42,22 @@ class view {
   std::size_t size_ = 0;
 };
 
-// Why a call gave nothing: what hangpose_detail says.
+// Reason why a call failed: a hangpose_detail.
 class error {
  public:
   error() noexcept : detail_() { detail_.struct_size = sizeof detail_; }
 
   hangpose_status status() const noexcept { return detail_.status; }
-  // What is wrong and how to mend it.
+  // A sentence for people: what is wrong and how to correct it.
   const char *message() const noexcept { return detail_.message; }
-  // The argument or field that is wrong, or "".
+  // Name of the wrong argument or field, or "".
   const char *field() const noexcept { return detail_.field; }
-  // Index, value and range, where there are such.
+  // The whole detail, with the index, the value and its range.
   const hangpose_detail &detail() const noexcept { return detail_; }
 
-  // For calls of hangpose.h.
+  // The `detail` argument for functions of hangpose.h.
   hangpose_detail *out() noexcept { return &detail_; }
-  // For what goes wrong on this side.
+  // An error that is found in the C++ wrapper.
   static error of(hangpose_status status, const char *field, const char *message) noexcept {
     error made;
     made.detail_.status = status;
@@ -78,7 +78,7 @@ class error {
   hangpose_detail detail_;
 };
 
-// A value or the reason why there is none. To ask for the value where there is none ends the program.
+// A value, or the reason why there is none. Access to a missing value calls std::abort.
 template <class T>
 class [[nodiscard]] result {
  public:
@@ -95,7 +95,7 @@ class [[nodiscard]] result {
   T &&operator*() &&noexcept { return std::move(*this).value(); }
   T *operator->() noexcept { return &value(); }
   const T *operator->() const noexcept { return &value(); }
-  // Where there is a value, says that all went well.
+  // The error; if there is a value, its status is HANGPOSE_OK.
   const class error &error() const noexcept { return error_; }
 
  private:
@@ -107,17 +107,17 @@ class [[nodiscard]] result {
   class error error_;
 };
 
-// Nothing but that all went well.
+// The value of a call that succeeded and returns nothing.
 struct done {};
 
-// Bytes for models and work: one's own from the heap, or the caller's, which must outlive what is made in
-// them.
+// Memory for models and work: owned, from the heap, or the caller's, which must outlive the model created in
+// it.
 class memory {
  public:
   memory() noexcept = default;
-  // The caller's.
+  // Memory of the caller.
   memory(void *data, std::size_t size) noexcept : data_(data), size_(size) {}
-  // One's own; data() is null where there are not so many left.
+  // Owned memory from the heap; data() is null if the heap has too little.
   static memory own(std::size_t size) noexcept {
     memory made;
     made.own_.reset(new (std::nothrow) unsigned char[size]);

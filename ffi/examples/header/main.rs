@@ -1,4 +1,4 @@
-//! Writes include/hangpose.h from the crate's source and its size queries, or with `--check` says whether it is what it should be.
+//! Writes include/hangpose.h from the crate's source and its size queries. With `--check` it fails if the file differs.
 
 mod sizes;
 
@@ -6,7 +6,7 @@ use cbindgen::{Builder, Config, DocumentationStyle, Language, Style};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// In the order in which the header has them.
+/// The source files in the order of the header.
 const SOURCES: [&str; 13] = [
     "version",
     "status",
@@ -36,7 +36,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let line = 1 + found.lines().zip(wanted.lines()).take_while(|(a, b)| a == b).count();
-    eprintln!("include/hangpose.h differs from the source in line {line}; write it anew with: make header");
+    eprintln!("include/hangpose.h differs from ffi/src in line {line}: regenerate it with `make header`");
     ExitCode::FAILURE
 }
 
@@ -63,7 +63,7 @@ fn header(ffi: &Path) -> String {
     let mut header = Vec::new();
     bindings.write(&mut header);
     let header = String::from_utf8(header).expect("the source is UTF-8");
-    // A minus sign needs parentheses in a macro.
+    // A negative number in a macro needs parentheses.
     let lines = header.lines().map(|line| match line.split_once(" -") {
         Some((name, digits)) if line.starts_with("#define ") => format!("{name} (-{digits})\n"),
         _ => format!("{line}\n"),

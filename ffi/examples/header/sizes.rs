@@ -1,11 +1,11 @@
-//! The constants behind `HANGPOSE_OBJECT_BYTES` and its like, from the queries.
+//! The constants of the macros `HANGPOSE_*_BYTES`, computed from the size queries.
 
 use hangpose_ffi::{
     hangpose_limits, hangpose_object_bytes, hangpose_predict_bytes, hangpose_supporter_bytes,
 };
 
 type Query = unsafe extern "C" fn(*const hangpose_limits) -> usize;
-/// The name of what is counted, and where its count is.
+/// The name of a counted element and the field with its count.
 type Field = (&'static str, fn(&mut hangpose_limits) -> &mut u32);
 
 const QUERIES: [(&str, Query, &[Field]); 3] = [
@@ -27,7 +27,7 @@ const QUERIES: [(&str, Query, &[Field]); 3] = [
     ),
 ];
 
-/// As the header has them.
+/// The constants as `#define` lines of the header.
 pub(super) fn defines() -> String {
     let mut text = String::new();
     for (name, query, fields) in QUERIES {
@@ -40,10 +40,10 @@ pub(super) fn defines() -> String {
             points: 0,
             poses: 0,
         };
-        // SAFETY: the limits are there.
+        // SAFETY: the pointer leads to valid limits.
         let bytes = |limits: hangpose_limits| unsafe { query(&limits) };
-        // No query gives more for all of its limits together than for each alone, added up; rounding to whole arrays
-        // adds less than a page.
+        // A query for all limits together is never greater than the sum of its queries for each limit alone. Rounding
+        // to whole arrays adds less than 1024 bytes.
         let at_least = bytes(none).next_multiple_of(1024) + 1024;
         text += &format!("#define HANGPOSE_{name}_BYTES_AT_LEAST {at_least}\n");
         for (each, field) in fields {

@@ -1,4 +1,4 @@
-// A ring on a peg, in memory between guards, and how to count what is not as it should be.
+// The test fixture: a ring on a peg in memory between guards, and counters of checks and failures.
 #ifndef FIXTURE_H
 #define FIXTURE_H
 
@@ -9,7 +9,7 @@
 
 #include "shapes.h"
 
-// Small, since it runs under valgrind: of the peg, 17 mm.
+// Small, because the tests run under valgrind; POINTS covers 17 mm of the peg.
 enum { SAMPLES = 300, VOXELS = 5000, POINTS = 500, POSES = 4, GUARD = 64, MARK = 0xA5 };
 
 static float vertices[RING_VERTICES][3], points[PEG_POINTS][3], normals[PEG_POINTS][3];
@@ -36,7 +36,7 @@ static void check(int is_right, const char *what, int line) {
 #define CHECK(is_right) check((is_right), #is_right, __LINE__)
 #define REFUSED(status) check((status) < 0, #status, __LINE__)
 
-// `size` bytes between guards, `offset` bytes from where they would be aligned.
+// `size` bytes between guards, `offset` bytes away from an aligned address.
 static unsigned char *guarded(size_t size, size_t offset) {
   unsigned char *all = malloc(size + offset + 2 * GUARD);
   if (all == NULL) abort();
@@ -67,7 +67,7 @@ static hangpose_status predict(const hangpose_object *o, const hangpose_supporte
   hangpose_prediction found = {.struct_size = sizeof found};
   return hangpose_predict(o, s, p, work, predict_size, NULL, poses, sizeof *poses, POSES, &found, &detail);
 }
-// Whether the models still give what they gave.
+// Whether the models still give the same poses as in set_up.
 static int is_unharmed(void) {
   hangpose_pose poses[POSES];
   hangpose_prediction found = {.struct_size = sizeof found};

@@ -1,5 +1,7 @@
-// Predicts in C what ffi/examples/pairs.rs has predicted in Rust, and compares the bits: ./pairs pair_*.bin
+// Repeats in C, in the caller's memory, the predictions that ffi/examples/pairs.rs has made in Rust, and
+// compares the bits: ./pairs pair_*.bin
 #include <hangpose.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +16,7 @@ static void *room(size_t size) {
   return memory;
 }
 
-// How many poses were compared, or -1.
+// The number of poses compared, or -1 if the prediction failed or differs.
 static int compare(const uint32_t *words) {
   const uint32_t *next = words + 4;
   hangpose_params params;
@@ -46,14 +48,14 @@ static int compare(const uint32_t *words) {
     return -1;
   const hangpose_status status = hangpose_predict(object, supporter, &params, memory[2], sizes[2], NULL,
                                                   poses, sizeof *poses, CAPACITY, &found, &detail);
-  const uint32_t answer[] = {(uint32_t)status,           found.pose_count,        found.stage,
-                             found.matching_pairs,       found.matching_fitting,  found.matching_clear,
-                             found.settling_candidates,  found.settling_clear,    found.settling_released,
-                             found.settling_rotated_off, found.settling_slid_off, found.settling_moving,
-                             found.settling_at_rest,     found.settling_wedged,   found.settling_probable,
-                             found.settling_firm};
-  int is_equal = memcmp(answer, next, sizeof answer) == 0;
-  next += sizeof answer / 4;
+  const size_t first = offsetof(hangpose_prediction, pose_count);
+  const size_t counts = offsetof(hangpose_prediction, settling_firm) + sizeof(uint32_t) - first;
+  const uint64_t work[2] = {found.rays, found.distance_queries};
+  int is_equal = (uint32_t)status == *next++;
+  is_equal = is_equal && memcmp((const char *)&found + first, next, counts) == 0;
+  next += counts / 4;
+  is_equal = is_equal && memcmp(work, next, sizeof work) == 0;
+  next += sizeof work / 4;
   const size_t pose_words = sizeof(hangpose_pose) / 4 - 1;
   for (uint32_t i = 0; is_equal && i < found.pose_count; ++i, next += pose_words)
     is_equal = memcmp((const uint32_t *)&poses[i] + 1, next, 4 * pose_words) == 0;

@@ -1,6 +1,6 @@
-// Every function with every argument wrong in every way that can be met: each is answered with a status,
-// nothing that is not the library's is written to, and the models are afterwards what they were. Run as it
-// is, with the caller under the sanitizers, and under valgrind.
+// Calls every function with invalid arguments of every kind. Each call must return an error status, write to
+// no memory other than its own, and leave the models unchanged. Runs as it is, with the caller under the
+// sanitizers, and under valgrind.
 #include <hangpose.h>
 #include <pthread.h>
 #include <time.h>
@@ -113,7 +113,7 @@ static void null_and_misaligned(void) {
                              &found, &detail));
     REFUSED(
         hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, 1, 1, &found, &detail));
-    // What is wrong without a detail is wrong all the same; a detail that is wrong is itself refused.
+    // An error is returned without a detail too, and an invalid detail is itself refused.
     REFUSED(hangpose_object_create(work, 0, bad[i], bad[i], NULL, bad[i], NULL));
     hangpose_detail small = {.struct_size = 4};
     REFUSED(hangpose_object_get_info(object, &object_info, &small));
@@ -124,7 +124,7 @@ static void null_and_misaligned(void) {
     REFUSED(hangpose_mesh_sample(&mesh, 0, memory, hangpose_sample_bytes(10), *points, bad[i], 10, &detail));
     release(memory, hangpose_sample_bytes(10), 0);
   }
-  // At an odd address nothing is a monitor or a detail; null means none.
+  // A monitor or a detail at an odd address is refused; null means none.
   hangpose_monitor *odd_monitor = bad[1];
   hangpose_detail *odd_detail = bad[1];
   REFUSED(hangpose_object_create(object_memory, 0, &mesh, &params, odd_monitor, &o, &detail));
@@ -225,7 +225,7 @@ static void counts_and_numbers(void) {
   release(memory, object_size, 0);
   release(other, supporter_size, 0);
   make_ring(0.03f, vertices, triangles);
-  // Every word of the params in turn. What stays in its range is taken, the rest is named.
+  // Every word of the params in turn: a value in its range is accepted, any other is named in the detail.
   const uint32_t words[] = {0xFFFFFFFF, 0x7F800000, 0xFF800000, 0x80000001, 0x4B000000};
   for (size_t at = 1; at < sizeof params / 4; ++at) {
     for (int i = 0; i < 5; ++i) {
@@ -279,7 +279,7 @@ static void overlaps(void) {
   CHECK(hangpose_supporter_create(memory, size, &cloud, &params, NULL, (void *)inside, NULL) ==
         HANGPOSE_ERROR_OVERLAP);
   (void)s;
-  // Into the models.
+  // Memory of the models as output.
   *d_inside = detail;
   CHECK(hangpose_predict(object, supporter, &params, object_memory, object_size, NULL, &pose, sizeof pose, 1,
                          &found, NULL) == HANGPOSE_ERROR_OVERLAP);
@@ -313,13 +313,13 @@ static void handles(void) {
   CHECK(predict(object, (void *)memory, &params) == HANGPOSE_ERROR_HANDLE);
   CHECK(predict((void *)supporter, supporter, &params) == HANGPOSE_ERROR_HANDLE);
   CHECK(predict(object, (void *)object, &params) == HANGPOSE_ERROR_HANDLE);
-  // A copy is not the original.
+  // A copy of a handle is refused.
   memcpy(memory, object, 256);
   CHECK(predict((void *)memory, supporter, &params) == HANGPOSE_ERROR_HANDLE);
   CHECK(hangpose_supporter_update((void *)memory, &cloud, &params, NULL, &detail) == HANGPOSE_ERROR_HANDLE);
   CHECK(make_object(memory, object_size, &mesh, &params, &monitor) == HANGPOSE_ERROR_HANDLE);
   CHECK(hangpose_monitor_progress(&monitor) == 0.0f && hangpose_monitor_is_cancelled(&monitor) == 0);
-  // What is overwritten is no more, also by a create that fails half-way.
+  // A model whose memory was reused is refused, even if the new analysis was cancelled.
   hangpose_object *made;
   CHECK(hangpose_object_create(memory, object_size, &mesh, &params, NULL, &made, &detail) == HANGPOSE_OK);
   CHECK(predict(made, supporter, &params) == HANGPOSE_OK);
@@ -328,7 +328,7 @@ static void handles(void) {
   hangpose_monitor_cancel(&monitor);
   CHECK(make_object(memory, object_size, &mesh, &params, &monitor) == HANGPOSE_CANCELLED);
   CHECK(predict(before, supporter, &params) == HANGPOSE_ERROR_HANDLE);
-  // A work limit is no mistake.
+  // A work limit is not an error.
   for (uint64_t limit = 0; limit < 100000; limit = 10 * limit + 1) {
     hangpose_monitor_init(&monitor, sizeof monitor, limit, NULL);
     CHECK(make_object(memory, object_size, &mesh, &params, &monitor) >= 0);
@@ -337,7 +337,7 @@ static void handles(void) {
   CHECK(is_unharmed());
 }
 
-// Models that were analysed with other params than the prediction's.
+// Models that were analysed with params other than those of the prediction.
 static void other_params(void) {
   hangpose_params paper = params;
   paper.candidates = HANGPOSE_CANDIDATES_SITES;
@@ -380,7 +380,7 @@ static void updates(void) {
   CHECK(is_unharmed());
 }
 
-// Two threads predict with the same models, a third updates one of them and looks on.
+// Two threads predict with the same models while a third updates one of them and reads the progress.
 static hangpose_monitor shared;
 static void *predict_again_and_again(void *tally) {
   unsigned char *mine = guarded(predict_size, 3);
@@ -390,7 +390,7 @@ static void *predict_again_and_again(void *tally) {
     hangpose_detail said = {.struct_size = sizeof said};
     const hangpose_status status = hangpose_predict(object, supporter, &params, mine, predict_size, &shared,
                                                     poses, sizeof *poses, POSES, &found, &said);
-    nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);  // so that an update gets its turn
+    nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);  // leaves time for an update
     if (status == HANGPOSE_OK) ++((int *)tally)[0];
     if (status == HANGPOSE_OK && memcmp(poses, right, right_count * sizeof *poses) != 0) ++((int *)tally)[1];
     if (status != HANGPOSE_OK && status != HANGPOSE_ERROR_BUSY) ++((int *)tally)[1];
@@ -413,7 +413,7 @@ static void threads(void) {
   }
   for (int i = 0; i < 2; ++i) pthread_join(both[i], NULL);
   CHECK(tallies[0][1] == 0 && tallies[1][1] == 0);
-  printf("two threads: %d predictions and %d updates went through\n", tallies[0][0] + tallies[1][0], updated);
+  printf("two threads: %d predictions and %d updates succeeded\n", tallies[0][0] + tallies[1][0], updated);
   CHECK(is_unharmed());
 }
 

@@ -1,4 +1,4 @@
-// What hangpose.hpp adds to hangpose.h: who owns what, and that every failure is seen.
+// Tests what hangpose.hpp adds to hangpose.h: ownership, and that every failure is reported.
 #include <cstdio>
 #include <cstring>
 #include <hangpose.hpp>
@@ -27,7 +27,7 @@ int main() {
   params.samples = 3000;
   params.voxels = 20000;
 
-  // Nothing, in its several forms.
+  // Empty and invalid inputs.
   const std::vector<hangpose::vec3> none;
   auto empty = hangpose::object::create({none, triangles}, params);
   CHECK(!empty && empty.error().status() == HANGPOSE_ERROR_COUNT);
@@ -44,7 +44,7 @@ int main() {
   auto refused = hangpose::object::create({vertices, triangles}, wrong);
   CHECK(!refused && refused.error().detail().value == 2.0 && refused.error().detail().maximum == 1.0);
 
-  // In memory of one's own, of the caller's, and moved from hand to hand.
+  // Owned memory, memory of the caller, and moved models.
   auto ring = hangpose::object::create({vertices, triangles}, params);
   CHECK(ring && ring->info() && ring->info()->is_closed == 1);
   hangpose::object moved = *std::move(ring);
@@ -70,7 +70,7 @@ int main() {
   CHECK(hangpose::supporter::create({span, std::span(normals)}, params));
 #endif
 
-  // Updates with more points need room that was asked for.
+  // An update with more points needs room reserved at creation.
   auto growing = hangpose::supporter::create({hangpose::view<const hangpose::vec3>(points.data(), 1000)},
                                              params, nullptr, PEG_POINTS);
   CHECK(growing && growing->update({points, normals}, params));

@@ -1,0 +1,139 @@
+//! Tests the conversions from the core's types to the C structs with a different value in every field.
+
+use hangpose::geometry::{Point, Pose, Vector};
+use hangpose::hanging::{
+    Cost, Counts, HangingPose, MatchingCounts, Prediction, Rejection, Rest, SettlingCounts, SiteMatch, Stage,
+};
+use hangpose::mechanics::{Contact, Margin};
+use hangpose::{Monitor, Params, Stop, Work, analyze_object, analyze_supporter, files, predict_poses};
+use hangpose_ffi::*;
+use std::path::Path;
+
+#[test]
+fn every_count_of_a_prediction_reaches_its_field() {
+    let poses = [HangingPose::default(); 2];
+    let counts = Counts {
+        matching: MatchingCounts { pairs: 11, fitting: 12, clear: 13 },
+        settling: SettlingCounts {
+            candidates: 21,
+            clear: 22,
+            released: 23,
+            rotated_off: 24,
+            slid_off: 25,
+            moving: 26,
+            at_rest: 27,
+            wedged: 28,
+            probable: 29,
+            firm: 30,
+        },
+        ..Counts::default()
+    };
+    let found = Prediction {
+        poses: &poses,
+        rejection: Some(Rejection { stage: Stage::SlidesOff, counts }),
+        stopped: Some(Stop::WorkLimit),
+        counts,
+        work: Work { rays: 1 << 40, distance_queries: 1 << 41 },
+    };
+    let c = hangpose_prediction::from(&found);
+    assert_eq!(c.struct_size as usize, size_of::<hangpose_prediction>());
+    assert_eq!((c.pose_count, c.stage, c.stopped), (2, HANGPOSE_STAGE_SLIDES_OFF, HANGPOSE_WORK_LIMIT));
+    assert_eq!([c.matching_pairs, c.matching_fitting, c.matching_clear], [11, 12, 13]);
+    assert_eq!([c.settling_candidates, c.settling_clear, c.settling_released], [21, 22, 23]);
+    assert_eq!([c.settling_rotated_off, c.settling_slid_off, c.settling_moving], [24, 25, 26]);
+    assert_eq!([c.settling_at_rest, c.settling_wedged], [27, 28]);
+    assert_eq!([c.settling_probable, c.settling_firm], [29, 30]);
+    assert_eq!([c.rays, c.distance_queries], [1 << 40, 1 << 41]);
+
+    let hung = hangpose_prediction::from(&Prediction { rejection: None, stopped: None, ..found });
+    assert_eq!((hung.stage, hung.stopped), (HANGPOSE_STAGE_NONE, HANGPOSE_OK));
+}
+
+#[test]
+fn every_number_of_a_pose_reaches_its_field() {
+    let margin = Margin {
+        tilts: [0.18, 0.11, 0.12, 0.13, 0.14, 0.15, 0.16, 0.17],
+        jolt_time: 0.21,
+        tilted_sinking: 0.22,
+        escape_rise: 0.23,
+        escape_ratio: 0.24,
+        knock_speed: 0.25,
+        centre_of_mass_radius: 0.26,
+    };
+    let pose = Pose::new(Vector::new(1.0, 2.0, 3.0), Vector::new(0.1, 0.2, 0.3));
+    let rest_pose = Pose::new(Vector::new(4.0, 5.0, 6.0), Vector::new(0.4, 0.5, 0.6));
+    // The contacts of a rest are private, so they come from a prediction.
+    let mut rest = a_rest();
+    (rest.pose, rest.margin) = (rest_pose, margin);
+    (rest.sinking, rest.clearance, rest.probability) = (0.31, 0.32, 0.33);
+    let cost = Cost { collision: 41, boundary: 0.42, contact_area: 0.43, total: 0.44 };
+    let matched = SiteMatch { cost, object_site: 45, support_site: 46, is_reversed: true };
+    let c = hangpose_pose::from(&HangingPose { pose, rest: Some(rest), matched: Some(matched) });
+
+    assert_eq!(c.struct_size as usize, size_of::<hangpose_pose>());
+    assert_eq!((c.position, c.quaternion), ([1.0, 2.0, 3.0], xyzw(&pose)));
+    assert_eq!((c.rest_position, c.rest_quaternion), ([4.0, 5.0, 6.0], xyzw(&rest_pose)));
+    assert_eq!((c.has_rest, c.sinking, c.clearance, c.probability), (1, 0.31, 0.32, 0.33));
+    let m = c.margin;
+    assert_eq!((m.tilts, m.least_tilt), (margin.tilts, 0.11));
+    assert_eq!([m.jolt_time, m.tilted_sinking], [0.21, 0.22]);
+    assert_eq!([m.escape_rise, m.escape_ratio], [0.23, 0.24]);
+    assert_eq!([m.knock_speed, m.centre_of_mass_radius], [0.25, 0.26]);
+    assert_eq!((c.is_matched, c.object_site, c.support_site, c.is_reversed), (1, 45, 46, 1));
+    assert_eq!((c.collision, c.boundary, c.contact_area, c.total), (41, 0.42, 0.43, 0.44));
+
+    let contacts = rest.contacts();
+    assert!(!contacts.is_empty());
+    assert_eq!(c.contact_count as usize, contacts.len());
+    for (index, found) in c.contacts.iter().enumerate() {
+        let expected = contacts.get(index).copied().unwrap_or_default();
+        assert_eq!(found.position, <[f32; 3]>::from(expected.position));
+        assert_eq!(found.normal, <[f32; 3]>::from(expected.normal));
+        assert_eq!(found.force, expected.force);
+    }
+}
+
+#[test]
+fn every_number_of_a_contact_reaches_its_field() {
+    let (position, normal) = (Point::new(1.0, 2.0, 3.0), Vector::new(4.0, 5.0, 6.0));
+    let c = hangpose_contact::from(&Contact { position, normal, force: 7.0 });
+    assert_eq!((c.position, c.normal, c.force), ([1.0, 2.0, 3.0], [4.0, 5.0, 6.0], 7.0));
+}
+
+#[test]
+fn a_pose_without_rest_and_match_says_so() {
+    let c = hangpose_pose::from(&HangingPose::default());
+    assert_eq!((c.position, c.quaternion), ([0.0; 3], [0.0, 0.0, 0.0, 1.0]));
+    assert_eq!((c.has_rest, c.contact_count, c.is_matched), (0, 0, 0));
+    let (p, q, m) = (c.rest_position, c.rest_quaternion, c.margin);
+    let rest = [c.probability, c.sinking, c.clearance, m.least_tilt, m.jolt_time, m.tilted_sinking]
+        .into_iter()
+        .chain([m.escape_rise, m.escape_ratio, m.knock_speed, m.centre_of_mass_radius])
+        .chain(p)
+        .chain(q)
+        .chain(m.tilts);
+    assert!(rest.chain([c.boundary, c.contact_area, c.total]).all(f32::is_nan));
+    assert!(c.contacts.iter().all(|x| (x.position, x.normal, x.force) == ([0.0; 3], [0.0; 3], 0.0)));
+    assert_eq!((c.object_site, c.support_site), (HANGPOSE_NO_INDEX, HANGPOSE_NO_INDEX));
+    assert_eq!((c.is_reversed, c.collision), (0, 0));
+}
+
+/// x, y, z, w of the rotation.
+fn xyzw(pose: &Pose) -> [f32; 4] {
+    let q = pose.rotation.quaternion();
+    [q.i, q.j, q.k, q.w]
+}
+
+/// The rest of the sample mug on the sample hook.
+fn a_rest() -> Rest {
+    let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples");
+    let mesh = files::read_mesh(&samples.join("mug.obj")).unwrap();
+    let cloud = files::read_cloud(&samples.join("hook.ply")).unwrap();
+    let params = Params { samples: 4000, voxels: 100_000, ..Params::default() };
+    let (mut memory, mut more_memory, monitor) = (Vec::new(), Vec::new(), Monitor::new());
+    let object = analyze_object(&mesh.mesh().unwrap(), &params, &mut memory, &monitor).unwrap();
+    let supporter = analyze_supporter(&cloud.cloud().unwrap(), &params, &mut more_memory, &monitor).unwrap();
+    let mut poses = [HangingPose::default()];
+    let found = predict_poses(&object, &supporter, &params, &mut poses, &monitor).unwrap();
+    found.poses.first().and_then(|pose| pose.rest).expect("the mug hangs on the hook")
+}
