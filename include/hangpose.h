@@ -632,8 +632,8 @@ typedef struct hangpose_prediction {
 // The released object does not come to rest.
 #define HANGPOSE_STAGE_NEVER_RESTS 9
 
-// The object comes to rest, but a nudge would bring it down, it is wedged and would not come off again, or there
-// is no room to release it there.
+// The object comes to rest, but a small disturbance would bring it down, it is wedged and would not come off again, or
+// there is no room to release it there.
 #define HANGPOSE_STAGE_TOO_LOOSE 10
 
 // The library's own method.

@@ -70,8 +70,8 @@ pub const HANGPOSE_STAGE_ROTATES_OFF: hangpose_stage = 7;
 pub const HANGPOSE_STAGE_SLIDES_OFF: hangpose_stage = 8;
 /// The released object does not come to rest.
 pub const HANGPOSE_STAGE_NEVER_RESTS: hangpose_stage = 9;
-/// The object comes to rest, but a nudge would bring it down, it is wedged and would not come off again, or there
-/// is no room to release it there.
+/// The object comes to rest, but a small disturbance would bring it down, it is wedged and would not come off again, or
+/// there is no room to release it there.
 pub const HANGPOSE_STAGE_TOO_LOOSE: hangpose_stage = 10;
 
 pub(crate) fn stage(stage: Stage) -> hangpose_stage {
@@ -145,18 +145,18 @@ pub(crate) fn stage_text(stage: hangpose_stage) -> &'static CStr {
             c"the object has no free space for a supporter beside its contact points"
         }
         HANGPOSE_STAGE_NOT_ENCIRCLED => {
-            c"the object does not enclose any of its free spaces, a supporter would slip out"
+            c"the object encloses none of its free spaces, so a supporter would slip out"
         }
         HANGPOSE_STAGE_NO_SUPPORT => c"the supporter has no part that faces up",
         HANGPOSE_STAGE_TOO_THICK => {
             c"every part of the supporter that faces up is too thick for the object's free spaces"
         }
-        HANGPOSE_STAGE_ALL_COLLIDE => c"in every pose the supporter runs through the object",
-        HANGPOSE_STAGE_ROTATES_OFF => c"wherever it is let go, the object rotates off",
-        HANGPOSE_STAGE_SLIDES_OFF => c"wherever it is let go, the object slides off",
-        HANGPOSE_STAGE_NEVER_RESTS => c"wherever it is let go, the object does not come to rest",
+        HANGPOSE_STAGE_ALL_COLLIDE => c"in every pose the supporter penetrates the object",
+        HANGPOSE_STAGE_ROTATES_OFF => c"no released pose stays: most often the object rotates off",
+        HANGPOSE_STAGE_SLIDES_OFF => c"no released pose stays: most often the object slides off or falls through",
+        HANGPOSE_STAGE_NEVER_RESTS => c"no released pose stays: most often the object is still moving when the time is up",
         HANGPOSE_STAGE_TOO_LOOSE => {
-            c"where the object comes to rest it is stuck, or a nudge would bring it down"
+            c"no released pose stays: most often the object is wedged where it rests, or a small disturbance brings it down"
         }
         _ => c"unknown stage",
     }

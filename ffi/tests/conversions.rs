@@ -1,8 +1,9 @@
 //! Tests the conversions from the core's types to the C structs with a different value in every field.
 
 use hangpose::geometry::{Point, Pose, Vector};
+use hangpose::hanging::sites::{self, Cost, SiteMatch};
 use hangpose::hanging::{
-    Cost, Counts, HangingPose, MatchingCounts, Prediction, Rejection, Rest, SettlingCounts, SiteMatch, Stage,
+    Counts, HangingPose, Prediction, Rejection, Rest, SearchCounts, SettlingCounts, Stage, contacts,
 };
 use hangpose::mechanics::{Contact, Margin};
 use hangpose::{Monitor, Params, Stop, Work, analyze_object, analyze_supporter, files, predict_poses};
@@ -12,22 +13,19 @@ use std::path::Path;
 #[test]
 fn every_count_of_a_prediction_reaches_its_field() {
     let poses = [HangingPose::default(); 2];
-    let counts = Counts {
-        matching: MatchingCounts { pairs: 11, fitting: 12, clear: 13 },
-        settling: SettlingCounts {
-            candidates: 21,
-            clear: 22,
-            released: 23,
-            rotated_off: 24,
-            slid_off: 25,
-            moving: 26,
-            at_rest: 27,
-            wedged: 28,
-            probable: 29,
-            firm: 30,
-        },
-        ..Counts::default()
+    let settling = SettlingCounts {
+        released: 23,
+        rotated_off: 24,
+        slid_off: 25,
+        moving: 26,
+        at_rest: 27,
+        wedged: 28,
+        probable: 29,
+        firm: 30,
     };
+    let candidates = contacts::CandidateCounts { made: 21, clear: 22 };
+    let search = SearchCounts::Contacts(contacts::Counts { candidates, ..Default::default() });
+    let counts = Counts { search, settling };
     let found = Prediction {
         poses: &poses,
         rejection: Some(Rejection { stage: Stage::SlidesOff, counts }),
@@ -38,12 +36,18 @@ fn every_count_of_a_prediction_reaches_its_field() {
     let c = hangpose_prediction::from(&found);
     assert_eq!(c.struct_size as usize, size_of::<hangpose_prediction>());
     assert_eq!((c.pose_count, c.stage, c.stopped), (2, HANGPOSE_STAGE_SLIDES_OFF, HANGPOSE_WORK_LIMIT));
-    assert_eq!([c.matching_pairs, c.matching_fitting, c.matching_clear], [11, 12, 13]);
+    assert_eq!([c.matching_pairs, c.matching_fitting, c.matching_clear], [0; 3]);
     assert_eq!([c.settling_candidates, c.settling_clear, c.settling_released], [21, 22, 23]);
     assert_eq!([c.settling_rotated_off, c.settling_slid_off, c.settling_moving], [24, 25, 26]);
     assert_eq!([c.settling_at_rest, c.settling_wedged], [27, 28]);
     assert_eq!([c.settling_probable, c.settling_firm], [29, 30]);
     assert_eq!([c.rays, c.distance_queries], [1 << 40, 1 << 41]);
+
+    let matching = sites::MatchingCounts { pairs: 11, fitting: 12, clear: 13 };
+    let search = SearchCounts::Sites(sites::Counts { matching, ..Default::default() });
+    let c = hangpose_prediction::from(&Prediction { counts: Counts { search, settling }, ..found });
+    assert_eq!([c.matching_pairs, c.matching_fitting, c.matching_clear], [11, 12, 13]);
+    assert_eq!([c.settling_candidates, c.settling_clear, c.settling_released], [0, 0, 23]);
 
     let hung = hangpose_prediction::from(&Prediction { rejection: None, stopped: None, ..found });
     assert_eq!((hung.stage, hung.stopped), (HANGPOSE_STAGE_NONE, HANGPOSE_OK));
