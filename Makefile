@@ -30,7 +30,7 @@ test: setup
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
-	cargo run --release -p hangpose --example samples -- --check
+	cargo run --release -p host-tests --example samples -- --check
 	cargo run -p hangpose-ffi --example header -- --check
 	scripts/bare-metal.sh
 	scripts/link.sh
@@ -89,8 +89,8 @@ deb:
 	cmake --build build/deb
 	cd build/deb && cpack -B $(CURDIR)/build
 
-samples:
-	cargo run --release -p hangpose --example samples
+samples: setup
+	cargo run --release -p host-tests --example samples
 
 clean:
 	cargo clean

@@ -6,4 +6,4 @@ pub mod shapes;
 mod shell;
 pub mod solid;
 pub mod tables;
-mod winding;
+pub mod winding;

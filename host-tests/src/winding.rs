@@ -11,7 +11,7 @@ const FAR: f64 = 3.0;
 
 /// A surface that is asked for its generalised winding number (Jacobson et al. 2013): 1 inside a closed surface, 0
 /// outside, in between near the openings of another.
-pub(crate) struct Winding {
+pub struct Winding {
     clusters: Vec<Cluster>,
 }
 
@@ -26,7 +26,8 @@ struct Cluster {
 }
 
 impl Winding {
-    pub(crate) fn new(triangles: impl Iterator<Item = [Point3<f64>; 3]>) -> Self {
+    /// Sums the triangles up in cells.
+    pub fn new(triangles: impl Iterator<Item = [Point3<f64>; 3]>) -> Self {
         let triangles: Vec<_> = triangles.collect();
         let corners = || triangles.as_flattened().iter().copied();
         let low = corners().reduce(|a, b| a.inf(&b)).unwrap_or_default();
@@ -40,7 +41,8 @@ impl Winding {
         Self { clusters: cells.into_values().map(Cluster::new).collect() }
     }
 
-    pub(crate) fn number(&self, point: &Point3<f64>) -> f64 {
+    /// The winding number of the surface around a point.
+    pub fn number(&self, point: &Point3<f64>) -> f64 {
         self.clusters.iter().map(|cluster| cluster.angle(point)).sum::<f64>() / (4.0 * PI)
     }
 }

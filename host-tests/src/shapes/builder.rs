@@ -1,7 +1,7 @@
 //! Bodies from a few rules, mesh and convex parts at once, so that the two cannot drift apart.
 
 use super::sections::{circle, corners_of};
-use super::vector::{V, X, Y, Z, across, add, along, cross, dot, length, scale, single, sub, turn, unit};
+use super::vector::{V, X, Y, Z, add, along, face_outwards, frames, length, scale, single, sub, turn, unit};
 use crate::solid::{Part, Solid};
 
 /// A shape in the making. Every method adds one closed body, and the convex parts that fill it.
@@ -66,16 +66,9 @@ impl Builder {
         }));
     }
 
-    /// Adds a closed surface and turns it so that it faces outwards.
+    /// Adds a closed surface and makes it face outwards.
     fn body(&mut self, vertices: Vec<V>, mut triangles: Vec<[usize; 3]>) {
-        let volume: f64 = triangles
-            .iter()
-            .map(|t| t.map(|i| sub(vertices[i], vertices[0])))
-            .map(|[a, b, c]| dot(a, cross(b, c)))
-            .sum();
-        if volume < 0.0 {
-            triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        }
+        face_outwards(&vertices, &mut triangles);
         let first = self.vertices.len();
         self.vertices.extend(vertices);
         self.triangles.extend(triangles.into_iter().map(|t| t.map(|i| i + first)));
@@ -128,13 +121,10 @@ impl Builder {
     /// Polygons across a path, carried along it without twist. `side` is where the polygon's x points at first.
     fn rings(path: &[V], side: V, section: impl Fn(usize) -> Vec<[f64; 2]>) -> (Vec<Vec<V>>, bool) {
         let (tangents, is_closed) = tangents(path);
-        let mut u = side;
-        let ring = |(i, &t): (usize, &V)| {
-            u = unit(across(u, t));
-            let v = cross(t, u);
+        let ring = |(i, [u, v]): (usize, [V; 2])| {
             section(i).iter().map(|&[x, y]| along(along(path[i], x, u), y, v)).collect()
         };
-        (tangents.iter().enumerate().map(ring).collect(), is_closed)
+        (frames(&tangents, side).into_iter().enumerate().map(ring).collect(), is_closed)
     }
 
     /// A convex polygon carried along a path, with flat ends; a path that ends where it began closes.

@@ -12,7 +12,7 @@ mod openings;
 mod random;
 mod sections;
 mod supporters;
-mod vector;
+pub mod vector;
 
 pub use fits::fits;
 pub use objects::OBJECTS;

@@ -1,38 +1,10 @@
 //! Closed triangle meshes from a few rules: revolve, sweep, box.
 
-use std::f64::consts::{PI, TAU};
-
-/// x, y, z in metres.
-pub(crate) type V = [f64; 3];
-
-pub(crate) fn add(a: V, b: V) -> V {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-pub(crate) fn sub(a: V, b: V) -> V {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(crate) fn scale(a: V, s: f64) -> V {
-    a.map(|c| c * s)
-}
-
-pub(crate) fn dot(a: V, b: V) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(crate) fn cross(a: V, b: V) -> V {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-pub(crate) fn unit(a: V) -> V {
-    scale(a, 1.0 / dot(a, a).sqrt())
-}
-
-/// The cosine and the sine, the same on every machine.
-pub(crate) fn turn(angle: f64) -> (f64, f64) {
-    (libm::cos(angle), libm::sin(angle))
-}
+use host_tests::shapes::vector::{
+    V, add, cos_sin, cross, dot, face_outwards, frames, scale, sub, turn, unit,
+};
+use host_tests::winding::Winding;
+use std::f64::consts::TAU;
 
 /// One closed surface, its triangles anticlockwise seen from outside.
 #[derive(Clone, Default)]
@@ -42,18 +14,8 @@ pub(crate) struct Body {
 }
 
 impl Body {
-    /// Six times the signed volume.
-    fn volume(&self) -> f64 {
-        let corner = |t: &[usize; 3], i: usize| self.vertices[t[i]];
-        self.triangles.iter().map(|t| dot(corner(t, 0), cross(corner(t, 1), corner(t, 2)))).sum()
-    }
-
     fn outward(mut self) -> Self {
-        if self.volume() < 0.0 {
-            for t in &mut self.triangles {
-                t.swap(1, 2);
-            }
-        }
+        face_outwards(&self.vertices, &mut self.triangles);
         self
     }
 
@@ -86,7 +48,7 @@ impl Body {
         let rings: Vec<usize> = (outline[1..outline.len() - 1].iter())
             .map(|&(r, z)| {
                 body.ring((0..count).map(|i| {
-                    let (cos, sin) = turn(TAU * i as f64 / count as f64);
+                    let [cos, sin] = cos_sin(TAU * i as f64 / count as f64);
                     [r * cos, r * sin, z]
                 }))
             })
@@ -117,33 +79,31 @@ impl Body {
             };
             unit(sub(path[after], path[before]))
         };
+        let tangents: Vec<V> = (0..n).map(tangent).collect();
         let mut body = Self::default();
         let mut rings = Vec::new();
-        let mut u = side;
-        let ellipse = |centre: V, t: V, u: V, size: f64| {
-            let v = cross(t, u);
+        let ellipse = |centre: V, [u, v]: [V; 2], size: f64| {
             (0..count).map(move |k| {
-                let (cos, sin) = turn(TAU * k as f64 / count as f64);
+                let [cos, sin] = cos_sin(TAU * k as f64 / count as f64);
                 add(centre, add(scale(u, a * size * cos), scale(v, b * size * sin)))
             })
         };
-        // A quarter of a circle, seen from the side, in this many steps.
+        // Steps of the quarter circle that a round end is in profile.
         let steps = 4;
-        let rounding = |k: usize| turn(0.5 * PI * k as f64 / steps as f64);
-        for (i, &centre) in path[..n].iter().enumerate() {
-            let t = tangent(i);
-            u = unit(sub(u, scale(t, dot(u, t))));
+        let rounding = |k: usize| turn(90.0 * k as f64 / steps as f64);
+        for (i, (&centre, frame)) in path.iter().zip(frames(&tangents, side)).enumerate() {
+            let t = tangents[i];
             if !closed && i == 0 && round[0] {
                 for k in (1..steps).rev() {
-                    let (size, back) = rounding(k);
-                    rings.push(body.ring(ellipse(add(centre, scale(t, -b * back)), t, u, size)));
+                    let [size, back] = rounding(k);
+                    rings.push(body.ring(ellipse(add(centre, scale(t, -b * back)), frame, size)));
                 }
             }
-            rings.push(body.ring(ellipse(centre, t, u, 1.0)));
+            rings.push(body.ring(ellipse(centre, frame, 1.0)));
             if !closed && i == n - 1 && round[1] {
                 for k in 1..steps {
-                    let (size, forth) = rounding(k);
-                    rings.push(body.ring(ellipse(add(centre, scale(t, b * forth)), t, u, size)));
+                    let [size, forth] = rounding(k);
+                    rings.push(body.ring(ellipse(add(centre, scale(t, b * forth)), frame, size)));
                 }
             }
         }
@@ -155,9 +115,9 @@ impl Body {
             body.bridge(last, rings[0], count);
         } else {
             let reach = round.map(|round| if round { b } else { 0.0 });
-            body.cap(last, add(path[n - 1], scale(tangent(n - 1), reach[1])), count);
+            body.cap(last, add(path[n - 1], scale(tangents[n - 1], reach[1])), count);
             let start = body.triangles.len();
-            body.cap(rings[0], add(path[0], scale(tangent(0), -reach[0])), count);
+            body.cap(rings[0], add(path[0], scale(tangents[0], -reach[0])), count);
             for t in &mut body.triangles[start..] {
                 t.swap(0, 1);
             }
@@ -225,40 +185,10 @@ impl Body {
         body
     }
 
-    /// Winding number 1 within, 0 without (Van Oosterom and Strackee's solid angles).
-    pub(crate) fn contains(&self, p: V) -> bool {
-        let mut angle = 0.0;
-        for t in &self.triangles {
-            let [a, b, c] = t.map(|v| sub(self.vertices[v], p));
-            let [la, lb, lc] = [a, b, c].map(|v| dot(v, v).sqrt());
-            let numerator = dot(a, cross(b, c));
-            let denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-            angle += libm::atan2(numerator, denominator);
-        }
-        angle > PI
+    /// The surface as [`Winding`] asks it.
+    pub(crate) fn winding(&self) -> Winding {
+        Winding::new(self.triangles.iter().map(|t| t.map(|v| self.vertices[v].into())))
     }
-
-    /// The box that holds it, as (low, high).
-    pub(crate) fn bounds(&self) -> (V, V) {
-        let mut bounds = ([f64::MAX; 3], [f64::MIN; 3]);
-        for v in &self.vertices {
-            for (i, &c) in v.iter().enumerate() {
-                bounds.0[i] = bounds.0[i].min(c);
-                bounds.1[i] = bounds.1[i].max(c);
-            }
-        }
-        bounds
-    }
-}
-
-/// A point `steps` times on the arc about `centre` from `from` to `to` degrees, in the plane of `x` and `y`.
-pub(crate) fn arc(centre: V, [x, y]: [V; 2], radii: [f64; 2], [from, to]: [f64; 2], steps: usize) -> Vec<V> {
-    (0..=steps)
-        .map(|i| {
-            let (cos, sin) = turn((from + (to - from) * i as f64 / steps as f64) * PI / 180.0);
-            add(centre, add(scale(x, radii[0] * cos), scale(y, radii[1] * sin)))
-        })
-        .collect()
 }
 
 /// The points of a straight line, both ends among them.
