@@ -10,16 +10,25 @@ use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
-use super::mesh::RawMesh;
 use super::source::Source;
 use super::text::{lines, number, short};
 use super::{FileError, Place};
 
+/// The vertices and faces of a file, unchecked.
+#[derive(Default)]
 pub(super) struct Ply {
-    /// Vertices and faces.
-    pub(super) mesh: RawMesh,
-    /// A normal for each vertex, if there are any.
+    pub(super) vertices: Vec<[f32; 3]>,
+    /// One normal per vertex, if the file has normals.
     pub(super) normals: Option<Vec<[f32; 3]>>,
+    pub(super) faces: Vec<Face>,
+}
+
+/// A polygon.
+pub(super) struct Face {
+    /// Vertex indices of its corners, counted from 0.
+    pub(super) corners: Vec<i64>,
+    /// Its line in a text file, 0 in a binary file.
+    pub(super) line: usize,
 }
 
 const NAMES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
@@ -79,7 +88,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Ply, FileError> {
     let body = reader.get_ref().position() as usize;
     check_lengths(source, &header, body)?;
 
-    let mut ply = Ply { mesh: RawMesh::default(), normals: None };
+    let mut ply = Ply::default();
     let mut text = Text::new(source, body);
     for element in header.elements.values() {
         let rows = match header.encoding {
@@ -126,7 +135,7 @@ impl Ply {
         if !has(&NAMES[..3]) {
             return Err(source.malformed(Place::Part("element vertex".into()), "it lacks x, y or z"));
         }
-        self.mesh.vertices = rows.iter().map(|(row, _)| [0, 1, 2].map(|k| row.numbers[k])).collect();
+        self.vertices = rows.iter().map(|(row, _)| [0, 1, 2].map(|k| row.numbers[k])).collect();
         self.normals =
             has(&NAMES[3..]).then(|| rows.iter().map(|(row, _)| [3, 4, 5].map(|k| row.numbers[k])).collect());
         Ok(())
@@ -141,9 +150,7 @@ impl Ply {
         if element.count > 0 && !element.properties.keys().any(|name| is_indices(name)) {
             return Err(source.malformed(Place::Part("element face".into()), "it lacks vertex_indices"));
         }
-        for (row, line) in rows {
-            self.mesh.face(row.indices, line);
-        }
+        self.faces.extend(rows.into_iter().map(|(row, line)| Face { corners: row.indices, line }));
         Ok(())
     }
 }

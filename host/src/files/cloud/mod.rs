@@ -32,10 +32,10 @@ pub(super) fn read(source: &Source<'_>) -> Result<CloudFile, FileError> {
         Format::Obj => RawCloud { points: mesh::obj_points(source)?, ..RawCloud::default() },
         Format::Ply => {
             let ply = ply::read(source)?;
-            if ply.mesh.face_count() > 0 {
+            if !ply.faces.is_empty() {
                 return Err(mesh_not_cloud());
             }
-            RawCloud { points: ply.mesh.vertices, normals: ply.normals, ..RawCloud::default() }
+            RawCloud { points: ply.vertices, normals: ply.normals, ..RawCloud::default() }
         }
         Format::Stl | Format::Gltf => return Err(mesh_not_cloud()),
     }

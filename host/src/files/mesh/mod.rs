@@ -8,10 +8,10 @@ mod stl;
 
 use std::path::Path;
 
-pub(super) use raw::RawMesh;
-
+use super::FileError;
+use super::ply::{self, Ply};
 use super::source::{Format, MESHES, Source};
-use super::{FileError, ply};
+use raw::RawMesh;
 
 /// A mesh as a file holds it.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,13 +34,22 @@ pub(super) fn read(source: &Source<'_>) -> Result<MeshFile, FileError> {
     match source.format {
         Format::Obj => obj::read(source)?,
         Format::Stl => stl::read(source)?,
-        Format::Ply => ply::read(source)?.mesh,
+        Format::Ply => of_ply(ply::read(source)?),
         Format::Gltf => gltf::read(source)?,
         Format::Pcd | Format::Xyz => {
             return Err(FileError::CloudNotMesh { path: source.path.into() });
         }
     }
     .finish(source)
+}
+
+fn of_ply(ply: Ply) -> RawMesh {
+    let mut mesh = RawMesh::default();
+    mesh.vertices = ply.vertices;
+    for face in ply.faces {
+        mesh.face(face.corners, face.line);
+    }
+    mesh
 }
 
 /// The vertices of an OBJ without faces.
