@@ -1,5 +1,6 @@
 //! Rigid shapes as the judges need them.
 
+use hangpose::geometry::Mesh;
 use std::collections::HashMap;
 
 /// A rigid shape: its surface, and convex parts that are as solid as it is. Metres; a supporter stands with z up.
@@ -41,6 +42,11 @@ pub enum Part {
 }
 
 impl Solid {
+    /// The surface as the predictor takes it.
+    pub fn mesh(&self) -> Mesh<'_> {
+        Mesh::new(&self.vertices, &self.triangles).expect("every vertex is finite and every index in range")
+    }
+
     /// Whether the surface bounds a volume: each edge is gone along as often one way as the other. Vertices at the same
     /// position count as one.
     pub fn is_closed(&self) -> bool {

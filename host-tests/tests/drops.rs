@@ -1,7 +1,7 @@
 //! A fixed set of pairs, predicted and dropped: a predictor that is broken falls below the floor.
 
 use hangpose::hanging::HangingPose;
-use hangpose::{Monitor, Params, analyze_object, analyze_supporter, geometry::Mesh, sample_supporter};
+use hangpose::{Monitor, Params, analyze_object, analyze_supporter};
 use host_tests::judge::{Bullet, Judge, Scene};
 use host_tests::tables::case::{Case, Fit, made};
 use host_tests::tables::run::{Engine, Options, run};
@@ -14,11 +14,9 @@ const SEED: u64 = 7;
 /// The best pose of a pair.
 fn best(case: &Case, params: &Params) -> Option<HangingPose> {
     let monitor = Monitor::new();
-    let mesh = Mesh::new(&case.object.vertices, &case.object.triangles).unwrap();
-    let supporter = Mesh::new(&case.supporter.vertices, &case.supporter.triangles).unwrap();
-    let cloud = sample_supporter(&supporter, 10_000, case.seed);
+    let cloud = case.supporter_cloud();
     let (mut memory, mut more_memory) = (Vec::new(), Vec::new());
-    let object = analyze_object(&mesh, params, &mut memory, &monitor).unwrap();
+    let object = analyze_object(&case.object.mesh(), params, &mut memory, &monitor).unwrap();
     let supporter = analyze_supporter(&cloud.cloud().unwrap(), params, &mut more_memory, &monitor).unwrap();
     let mut poses = [HangingPose::default(); 1];
     hangpose::predict_poses(&object, &supporter, params, &mut poses, &monitor).unwrap().poses.first().copied()

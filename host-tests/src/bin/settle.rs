@@ -2,15 +2,14 @@
 
 use anyhow::Result;
 use clap::Parser;
-use hangpose::geometry::Mesh;
 use hangpose::hanging::{HangingPose, let_go, predict_bytes};
 use hangpose::mechanics::Fate;
 use hangpose::memory::Limits;
-use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses, sample_supporter};
+use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses};
 use host_tests::judge::{Bullet, Judge, Ode, Scene};
 use host_tests::shapes::Random;
 use host_tests::tables::case::{Case, Fit, made};
-use host_tests::tables::report::wilson;
+use host_tests::tables::proportion::wilson;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -85,10 +84,9 @@ fn main() -> Result<()> {
 }
 
 fn judge(case: &Case, count: usize) -> Vec<Said> {
-    let cloud_of = Mesh::new(&case.supporter.vertices, &case.supporter.triangles).expect("shapes are valid");
-    let cloud = sample_supporter(&cloud_of, 10_000, case.seed);
+    let cloud = case.supporter_cloud();
     let params = Params::default();
-    let mesh = Mesh::new(&case.object.vertices, &case.object.triangles).expect("shapes are valid");
+    let mesh = case.object.mesh();
     let (mut object_memory, mut supporter_memory) = (Vec::new(), Vec::new());
     let monitor = Monitor::new();
     let object = analyze_object(&mesh, &params, &mut object_memory, &monitor).expect("memory is enough");

@@ -1,6 +1,6 @@
 //! Whether what was said to be probable came true.
 
-use super::report::wilson;
+use super::proportion::wilson;
 use super::row::{Outcome, Row, Said};
 use std::fmt::Write;
 

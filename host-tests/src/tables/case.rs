@@ -2,7 +2,12 @@
 
 use crate::shapes::{OBJECTS, ObjectKind, SUPPORTERS, fits};
 use crate::solid::Solid;
+use hangpose::files::CloudFile;
+use hangpose::sample_supporter;
 use std::sync::Arc;
+
+/// Points of a supporter's cloud.
+const POINTS: usize = 10_000;
 
 /// An object and a supporter, and whether they go together.
 #[derive(Clone)]
@@ -21,6 +26,13 @@ pub struct Case {
     pub object: Arc<Solid>,
     /// The supporter.
     pub supporter: Arc<Solid>,
+}
+
+impl Case {
+    /// The point cloud as which the predictor sees the supporter: [`POINTS`] samples of its surface.
+    pub fn supporter_cloud(&self) -> CloudFile {
+        sample_supporter(&self.supporter.mesh(), POINTS, self.seed)
+    }
 }
 
 /// Whether an object can hang on a supporter.

@@ -2,6 +2,7 @@
 
 mod calibration;
 pub mod case;
+pub mod proportion;
 pub mod real;
 pub mod report;
 pub mod row;

@@ -5,9 +5,8 @@ use super::row::{Failure, Outcome, Row};
 use super::search::finds_a_pose;
 use crate::gallery;
 use crate::judge::{Bullet, Judge, Limits, Ode, Scene, World};
-use hangpose::geometry::Mesh;
 use hangpose::hanging::HangingPose;
-use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses, sample_supporter};
+use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses};
 use std::collections::{HashMap, HashSet};
 use std::io::{BufRead, Write};
 use std::path::Path;
@@ -17,8 +16,6 @@ use std::time::Instant;
 
 /// Poses that are dropped at most, until one succeeds.
 pub const TOP: usize = 10;
-/// Points that a supporter is seen as.
-const POINTS: usize = 10_000;
 
 /// Who judges.
 #[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
@@ -113,16 +110,10 @@ fn read(record: &Path) -> std::io::Result<Vec<Row>> {
     }
 }
 
-/// The supporter as it is seen: samples all over its surface.
-fn cloud_of(case: &Case) -> hangpose::files::CloudFile {
-    let mesh = Mesh::new(&case.supporter.vertices, &case.supporter.triangles).expect("shapes are valid");
-    sample_supporter(&mesh, POINTS, case.seed)
-}
-
 fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row {
-    let cloud = cloud_of(case);
+    let cloud = case.supporter_cloud();
     let params = Params { seed: case.seed, ..params.clone() };
-    let mesh = Mesh::new(&case.object.vertices, &case.object.triangles).expect("shapes are valid");
+    let mesh = case.object.mesh();
     let (mut object_memory, mut supporter_memory) = (Vec::new(), Vec::new());
     let monitor = Monitor::new();
     let start = Instant::now();
