@@ -4,6 +4,7 @@ mod common;
 
 use common::*;
 use host_tests::judge::{Bullet, GRAVITY, Judge, Ode, Scene, Verdict};
+use host_tests::shapes::Random;
 use host_tests::solid::Solid;
 use nalgebra::{Isometry3, Vector3};
 use std::sync::OnceLock;
@@ -237,24 +238,23 @@ impl Trial {
     }
 }
 
-/// The same numbers every time (SplitMix64).
-struct Random(u64);
+/// Random numbers and poses in single precision.
+struct Draw(Random);
 
-impl Random {
-    fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 40) as f32 / (1 << 24) as f32
+impl Draw {
+    /// Uniform in [0, 1).
+    fn unit(&mut self) -> f32 {
+        (self.0.next_u64() >> 40) as f32 / (1 << 24) as f32
     }
 
+    /// Uniform in the cube [-1, 1)³.
     fn vector(&mut self) -> Vector3<f32> {
-        Vector3::from_fn(|_, _| 2.0 * self.next() - 1.0)
+        Vector3::from_fn(|_, _| 2.0 * self.unit() - 1.0)
     }
 
+    /// A rotation by at most `degrees`.
     fn turn(&mut self, degrees: f32) -> Isometry3<f32> {
-        let (axis, share) = (self.vector(), self.next());
+        let (axis, share) = (self.vector(), self.unit());
         pose([0.0; 3], axis, degrees * share)
     }
 }
@@ -299,7 +299,7 @@ fn trial(
     supporter: &Solid,
     hanging: &Isometry3<f32>,
 ) -> Trial {
-    let mut random = Random(number as u64);
+    let mut random = Draw(Random::new(number as u64));
     let mut scene = Scene::new(object, supporter);
     scene.tilt = false;
     let centre = Vector3::from(scene.centre_of_mass());

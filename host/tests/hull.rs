@@ -1,10 +1,13 @@
 //! The hull that is never built, against one that is (parry3d) and against every plane through three points.
 
+mod random;
+
 use std::time::Instant;
 
 use hangpose_core::geometry::{Point, Vector, hull::exit_distance};
 use parry3d::query::{Ray, RayCast};
 use parry3d::shape::ConvexPolyhedron;
+use random::Random;
 
 /// Half-planes `normal . x <= offset`, found by trying every plane through three points; none where the set is flat.
 struct Planes(Vec<([f64; 3], f64)>);
@@ -64,18 +67,13 @@ impl Planes {
     }
 }
 
-/// splitmix64
-struct Random(u64);
-
 impl Random {
+    /// Uniform in [0, 1).
     fn unit(&mut self) -> f32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 40) as f32 / (1u64 << 24) as f32
+        (self.next() >> 40) as f32 / (1u64 << 24) as f32
     }
 
+    /// Uniform in [-1, 1).
     fn signed(&mut self) -> f32 {
         2.0 * self.unit() - 1.0
     }

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use hangpose::files::{SupporterFile, read_cloud, read_mesh, read_supporter};
 
+use crate::random::Random;
 use crate::samples::*;
 
 fn samples() -> Vec<(&'static str, Vec<u8>)> {
@@ -62,14 +63,6 @@ fn assert_modest_memory() {
     assert!(peak.unwrap_or(0_u64) < 2_000_000, "{peak:?} kB");
 }
 
-/// Steele, Lea and Flood's splitmix64.
-fn random(state: &mut u64) -> u64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let z = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
-}
-
 #[test]
 fn cut_anywhere() {
     for (name, content) in samples() {
@@ -83,15 +76,15 @@ fn cut_anywhere() {
 
 #[test]
 fn bytes_flipped() {
-    let mut state = 1;
+    let mut random = Random(1);
     for (name, content) in samples() {
         let file = file(name, "");
         for _ in 0..700 {
             let mut content = content.clone();
-            for _ in 0..=random(&mut state) % 4 {
-                let at = random(&mut state) as usize % content.len();
+            for _ in 0..=random.next() % 4 {
+                let at = random.next() as usize % content.len();
                 // Half of them as a digit or a sign, which does more to text.
-                content[at] = match random(&mut state) {
+                content[at] = match random.next() {
                     r if r % 2 == 0 => (r >> 8) as u8,
                     r => b"0123456789-. "[(r >> 8) as usize % 13],
                 };
@@ -110,8 +103,8 @@ fn the_format_is_another() {
         for (_, content) in &all {
             read(&file, content);
         }
-        let mut state = 7;
-        read(&file, &(0..4096).map(|_| random(&mut state) as u8).collect::<Vec<_>>());
+        let mut random = Random(7);
+        read(&file, &(0..4096).map(|_| random.next() as u8).collect::<Vec<_>>());
         read(&file, &[0; 4096]);
     }
 }

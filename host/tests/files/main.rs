@@ -5,4 +5,6 @@ mod errors;
 mod garbage;
 mod meshes;
 mod polygons;
+#[path = "../random/mod.rs"]
+mod random;
 mod samples;
