@@ -1,4 +1,4 @@
-//! Whatever a file holds, a reader answers: soon, without a panic, and without reserving what a header merely claims.
+//! On any content a reader returns soon, without a panic, and without reserving memory that only a header claims.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -26,7 +26,7 @@ fn samples() -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
-/// Reads it in every way; what is read keeps its promises.
+/// Writes `content` to the file, reads it with every reader, and checks the guarantees of the result.
 fn read(file: &File, content: &[u8]) {
     fs::write(&file.path, content).unwrap();
     let finite = |points: &[[f32; 3]]| points.as_flattened().iter().all(|x| x.is_finite());
@@ -54,7 +54,7 @@ fn read(file: &File, content: &[u8]) {
     }
 }
 
-/// The most memory this process ever asked for, where the system tells.
+/// Asserts a bound on the peak virtual memory of the process, where the system reports it.
 fn assert_modest_memory() {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let peak = status
@@ -83,7 +83,7 @@ fn bytes_flipped() {
             let mut content = content.clone();
             for _ in 0..=random.next() % 4 {
                 let at = random.next() as usize % content.len();
-                // Half of them as a digit or a sign, which does more to text.
+                // Half of them become a digit or a sign, which has more effect on text.
                 content[at] = match random.next() {
                     r if r % 2 == 0 => (r >> 8) as u8,
                     r => b"0123456789-. "[(r >> 8) as usize % 13],

@@ -1,4 +1,4 @@
-//! The file readers against files written by hand, whose content is known.
+//! The file readers on hand-written files with known content.
 
 mod clouds;
 mod errors;

@@ -13,19 +13,19 @@ use super::ply::{self, Ply};
 use super::source::{Format, MESHES, Source};
 use raw::RawMesh;
 
-/// A mesh as a file holds it.
+/// Content of a mesh file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
-    /// Vertices in the file's frame and unit. Each is finite, used by a triangle, and at a place of its own.
+    /// Vertices in the frame and unit of the file. Each is finite, distinct from the others, and used by a triangle.
     pub vertices: Vec<[f32; 3]>,
-    /// Corners of each triangle, counter-clockwise seen from outside if the file keeps to that. Every index is in range and
-    /// no triangle repeats one; some may have no area.
+    /// Vertex indices of each triangle, in the winding order of the file, which by convention is counter-clockwise seen from
+    /// outside. Every index is in range and no triangle repeats one. A triangle may have no area.
     pub triangles: Vec<[u32; 3]>,
-    /// What a person should know: short sentences.
+    /// What the reader changed or ignored, as sentences for the user.
     pub notes: Vec<String>,
 }
 
-/// Reads a mesh: OBJ, STL, PLY, GLB or glTF, told by the extension.
+/// Reads a mesh: OBJ, STL, PLY, GLB or glTF, according to the extension.
 pub fn read_mesh(path: &Path) -> Result<MeshFile, FileError> {
     read(&Source::open(path, MESHES)?)
 }
