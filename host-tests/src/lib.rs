@@ -1,4 +1,4 @@
-//! Judges predicted poses: shapes of many kinds, dropped in two physics engines.
+//! Evaluates predicted poses: generates objects and supporters of many kinds and simulates the release in two physics engines.
 
 pub mod gallery;
 pub mod judge;

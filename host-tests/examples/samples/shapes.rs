@@ -1,4 +1,7 @@
-//! Closed triangle meshes from a few rules: revolve, sweep, box.
+//! Closed triangle meshes by revolution, sweep, prism and chamfered box.
+//!
+//! The vertex order and the sweep's tangents differ from those of the library's builder, and the published bytes of `samples/`
+//! depend on both.
 
 use host_tests::shapes::vector::{
     V, add, cos_sin, cross, dot, face_outwards, frames, scale, sub, turn, unit,
@@ -6,7 +9,7 @@ use host_tests::shapes::vector::{
 use host_tests::winding::Winding;
 use std::f64::consts::TAU;
 
-/// One closed surface, its triangles anticlockwise seen from outside.
+/// One closed surface with triangles that are counter-clockwise seen from outside.
 #[derive(Clone, Default)]
 pub(crate) struct Body {
     pub(crate) vertices: Vec<V>,
@@ -41,8 +44,7 @@ impl Body {
         }
     }
 
-    /// The solid that a closed outline of (radius, z) makes about the z axis; where the radius is 0 it meets the axis,
-    /// and there the outline begins and ends.
+    /// The solid of revolution of an outline of (radius, z) about the z axis. The outline begins and ends on the axis.
     pub(crate) fn revolve(outline: &[(f64, f64)], count: usize) -> Self {
         let mut body = Self::default();
         let rings: Vec<usize> = (outline[1..outline.len() - 1].iter())
@@ -56,7 +58,7 @@ impl Body {
         for pair in rings.windows(2) {
             body.bridge(pair[0], pair[1], count);
         }
-        // The two poles; the cap at the start looks the other way.
+        // Caps at the two poles. The first faces the opposite way.
         let start = body.triangles.len();
         body.cap(rings[0], [0.0, 0.0, outline[0].1], count);
         for t in &mut body.triangles[start..] {
@@ -66,8 +68,8 @@ impl Body {
         body.outward()
     }
 
-    /// An ellipse of half axes `a` (along `side` where the path starts) and `b`, carried along the path without
-    /// twist. A path that ends where it began closes; any other ends round or flat, as `round` says of its two ends.
+    /// An ellipse swept along a path without twist, with half axes `a`, initially along `side`, and `b`. A path that ends at its
+    /// first point gives a closed sweep. Otherwise `round` states for each end whether it is round or flat.
     pub(crate) fn sweep(path: &[V], side: V, [a, b]: [f64; 2], count: usize, round: [bool; 2]) -> Self {
         let closed = path[0] == path[path.len() - 1];
         let n = if closed { path.len() - 1 } else { path.len() };
@@ -88,7 +90,7 @@ impl Body {
                 add(centre, add(scale(u, a * size * cos), scale(v, b * size * sin)))
             })
         };
-        // Steps of the quarter circle that a round end is in profile.
+        // Steps of the quarter circle in the profile of a round end.
         let steps = 4;
         let rounding = |k: usize| turn(90.0 * k as f64 / steps as f64);
         for (i, (&centre, frame)) in path.iter().zip(frames(&tangents, side)).enumerate() {
@@ -125,7 +127,7 @@ impl Body {
         body.outward()
     }
 
-    /// A convex outline in the x-y plane, from `low` to `high` in z.
+    /// A prism over a convex outline in the x-y plane, from `low` to `high` in z.
     pub(crate) fn prism(outline: &[[f64; 2]], low: f64, high: f64) -> Self {
         let count = outline.len();
         let mut body = Self::default();
@@ -139,11 +141,11 @@ impl Body {
         body.outward()
     }
 
-    /// A box about `centre` with its eight corners' edges along the axes cut by `chamfer`: each face a smaller
-    /// rectangle, joined by strips and corner triangles.
+    /// A box about `centre` with edges chamfered by `chamfer`: six rectangles, joined by strips along the edges and by triangles at
+    /// the corners.
     pub(crate) fn cuboid(centre: V, size: V, chamfer: f64) -> Self {
         let mut body = Self::default();
-        // Corner (sx, sy, sz) has three vertices, one on each face that meets there.
+        // Each corner has three vertices, one on each of the faces that meet there.
         let index = |corner: usize, axis: usize| corner * 3 + axis;
         for corner in 0..8usize {
             for axis in 0..3 {
@@ -159,10 +161,10 @@ impl Body {
             let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
             for side in 0..2usize {
                 let c = |a: usize, b: usize| (side << axis) | (a << j) | (b << k);
-                // The face, and the strip along the edge parallel to `axis` that (side, other) name below.
+                // The rectangle of the face.
                 faces.push([c(0, 0), c(1, 0), c(1, 1), c(0, 1)].map(|corner| index(corner, axis)).to_vec());
                 for other in 0..2usize {
-                    // The edge along k where faces `axis` and `j` meet.
+                    // The strip along k between the faces of `axis` and `j`.
                     let (p, q) = (c(other, 0), c(other, 1));
                     faces.push(vec![index(p, axis), index(q, axis), index(q, j), index(p, j)]);
                 }
@@ -175,7 +177,7 @@ impl Body {
             for i in 1..face.len() - 1 {
                 let mut t = [face[0], face[i], face[i + 1]];
                 let [a, b, c] = t.map(|v| body.vertices[v]);
-                // Convex, so that outward is away from the centre.
+                // The box is convex, so outward is away from the centre.
                 if dot(cross(sub(b, a), sub(c, a)), sub(a, centre)) < 0.0 {
                     t.swap(1, 2);
                 }
@@ -185,13 +187,13 @@ impl Body {
         body
     }
 
-    /// The surface as [`Winding`] asks it.
+    /// The winding number of the surface.
     pub(crate) fn winding(&self) -> Winding {
         Winding::new(self.triangles.iter().map(|t| t.map(|v| self.vertices[v].into())))
     }
 }
 
-/// The points of a straight line, both ends among them.
+/// `steps` + 1 points on a straight line, including both ends.
 pub(crate) fn line(a: V, b: V, steps: usize) -> Vec<V> {
     (0..=steps).map(|i| add(a, scale(sub(b, a), i as f64 / steps as f64))).collect()
 }

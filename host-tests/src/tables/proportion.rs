@@ -1,6 +1,6 @@
 //! Success rates with confidence intervals.
 
-/// `successes` of `trials` in percent, with the 95 % interval of Wilson (1927).
+/// `successes` of `trials` in percent with the 95 % interval of Wilson (1927), as text.
 pub fn wilson(successes: usize, trials: usize) -> String {
     if trials == 0 {
         return "–".into();

@@ -138,10 +138,7 @@ fn the_ring_hangs_on_the_peg_with_the_weight_below() {
     // It rests on one contact. The normal force is the component of the weight along the normal; friction carries the rest.
     let [contact] = &best["contacts"].as_array().unwrap()[..] else { panic!("{}", best["contacts"]) };
     let (force, [_, _, up]) = (number(&contact["force"]), numbers::<3>(&contact["normal"]));
-    assert!(
-        (force - up).abs() < 0.01,
-        "the normal force is not the weight along the normal: {contact}"
-    );
+    assert!((force - up).abs() < 0.01, "the normal force is not the weight along the normal: {contact}");
     assert!(up > 1.0_f64.hypot(0.4).recip(), "outside the friction cone: {contact}");
     let [origin, tip, weight] =
         [[0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, weighted_ring_centre_z()]].map(|p| transform(&rest, p));
