@@ -15,7 +15,7 @@ MOST_SINKING_MM = 10.0
 
 
 def poses(path):
-    """Yields the features of each pose, whether it hangs, whether it is robust, its predicted probability, and its pair."""
+    """Yields for each pose: features, whether it hangs, whether it is robust, predicted probability, and pair."""
     with open(path) as file:
         rows = [json.loads(line) for line in file]
     for row in rows:
@@ -32,7 +32,7 @@ def poses(path):
 
 
 def fit(name, features, outcomes):
-    """Fits a logistic regression to the outcomes. Regularisation is weak and features are unscaled, as in the documented formula."""
+    """Fits a logistic regression, with weak regularisation and unscaled features as in the documented formula."""
     model = LogisticRegression(C=10.0, max_iter=1000).fit(features, outcomes)
     constants = [model.intercept_[0], *model.coef_[0]]
     print(f"{name}, {100 * outcomes.mean():.1f} % of {len(outcomes)}: " + ", ".join(f"{c:.2f}" for c in constants))

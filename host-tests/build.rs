@@ -1,4 +1,5 @@
-//! Compiles the shims over the two physics engines. They are optimised in every profile, since they dominate the run time.
+//! Compiles the shims over the two physics engines. They are optimised in every profile, since they dominate the run
+//! time.
 
 fn main() {
     let mut missing = Vec::new();

@@ -1,4 +1,5 @@
-//! Evaluates predicted poses: generates objects and supporters of many kinds and simulates the release in two physics engines.
+//! Evaluates predicted poses: generates objects and supporters of many kinds and simulates the release in two physics
+//! engines.
 
 pub mod gallery;
 pub mod judge;

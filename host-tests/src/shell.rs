@@ -10,15 +10,15 @@ use parry3d::math::Vector;
 use parry3d::query::{Ray, RayCast};
 use parry3d::shape::TriMesh;
 
-/// Tolerance of the simplification, m, as its own error estimate. On 94 real meshes the mean error of the vertices is 0.1 to
-/// 0.6 mm. The largest error is 1.2 mm in the median mesh, and larger at rims of open meshes.
+/// Tolerance of the simplification, m, as its own error estimate. On 94 real meshes the mean error of the vertices is
+/// 0.1 to 0.6 mm. The largest error is 1.2 mm in the median mesh, and larger at rims of open meshes.
 const SIMPLIFICATION: f32 = 0.0007;
 /// Largest thickness of the shell, m.
 const THICKEST: f32 = 0.002;
 /// Smallest thickness of the shell, m.
 const THINNEST: f32 = 0.0002;
-/// Largest thickness of the shell as a fraction of the distance to the opposite surface. Below one half, so that the shells of
-/// both sides of a wall do not meet.
+/// Largest thickness of the shell as a fraction of the distance to the opposite surface. Below one half, so that the
+/// shells of both sides of a wall do not meet.
 const REACH: f32 = 0.45;
 /// Thickness of a triangle without an inner side, m: half on each side.
 const SHEET: f32 = 0.0004;
@@ -26,12 +26,12 @@ const SHEET: f32 = 0.0004;
 const ASIDE: f64 = 0.0001;
 
 impl Solid {
-    /// The shell of an arbitrary mesh. Each part is a triangle of the simplified surface, extruded inwards, so that the shell
-    /// does not protrude from the surface, up to the tolerance of the simplification.
+    /// The shell of an arbitrary mesh. Each part is a triangle of the simplified surface, extruded inwards, so that the
+    /// shell does not protrude from the surface, up to the tolerance of the simplification.
     ///
-    /// The inner side of a triangle is the one with the larger absolute winding number. Meshes that are inside out or have
-    /// overlapping bodies therefore need no special case. Where both sides are about equal, as at a sheet without thickness or
-    /// near the rim of an open surface, half of the thickness is on each side.
+    /// The inner side of a triangle is the one with the larger absolute winding number. Meshes that are inside out or
+    /// have overlapping bodies therefore need no special case. Where both sides are about equal, as at a sheet without
+    /// thickness or near the rim of an open surface, half of the thickness is on each side.
     pub fn shell(vertices: Vec<[f32; 3]>, triangles: Vec<[u32; 3]>) -> Self {
         let corners = simplified(&vertices, &triangles);
         Self { parts: prisms(&corners), vertices, triangles, is_shell: true }

@@ -47,8 +47,8 @@ impl Solid {
         Mesh::new(&self.vertices, &self.triangles).expect("every vertex is finite and every index in range")
     }
 
-    /// Whether the surface bounds a volume: triangles use each edge equally often in both directions. Vertices at the same
-    /// position count as one.
+    /// Whether the surface bounds a volume: triangles use each edge equally often in both directions. Vertices at the
+    /// same position count as one.
     pub fn is_closed(&self) -> bool {
         // Adding zero turns -0 into 0.
         let at = |index: u32| self.vertices[index as usize].map(|x| (x + 0.0).to_bits());

@@ -6,11 +6,12 @@ use std::f64::consts::PI;
 
 /// Number of grid cells along the longest side of the bounding box. The triangles of a cell form a cluster.
 const CELLS: f64 = 20.0;
-/// Distance in multiples of a cluster's radius from which the cluster is approximated by one dipole (Barill et al. 2018).
+/// Distance in multiples of a cluster's radius from which the cluster is approximated by one dipole (Barill et al.
+/// 2018).
 const FAR: f64 = 3.0;
 
-/// A surface with its generalised winding number (Jacobson et al. 2013): 1 inside a closed surface, 0 outside, and in between
-/// near the openings of an open surface.
+/// A surface with its generalised winding number (Jacobson et al. 2013): 1 inside a closed surface, 0 outside, and in
+/// between near the openings of an open surface.
 pub struct Winding {
     clusters: Vec<Cluster>,
 }

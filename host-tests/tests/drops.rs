@@ -58,8 +58,8 @@ fn the_published_method_hangs_its_share_and_a_broken_one_does_not() {
     };
     let [intact, turned, moved] = successes(&Params::paper(), [|pose| pose, upside_down, beside]);
     println!("{intact} of {PAIRS} hang; upside down {turned}, 40 mm beside {moved}");
-    // Somewhat below the half that the tables show for the published method, and far above the rate of a predictor with wrong
-    // rotations or positions.
+    // Somewhat below the half that the tables show for the published method, and far above the rate of a predictor with
+    // wrong rotations or positions.
     let floor = PAIRS * 35 / 100;
     assert!(intact >= floor, "only {intact} of {PAIRS} pairs hang");
     assert!(turned < floor && moved < floor, "a broken predictor reaches the floor");

@@ -1,4 +1,5 @@
-//! Tests of the judges: clear cases of hanging and falling have the same verdicts in both engines, and both obey mechanics.
+//! Tests of the judges: clear cases of hanging and falling have the same verdicts in both engines, and both obey
+//! mechanics.
 
 mod common;
 
@@ -94,7 +95,8 @@ fn what_is_pushed_through_is_not_clear() {
 
 #[test]
 fn what_is_wedged_is_not_honest() {
-    // The hole of the ring is 0.5 mm smaller in radius than the peg. The pose is clear and holds, also under reversed gravity.
+    // The hole of the ring is 0.5 mm smaller in radius than the peg. The pose is clear and holds, also under reversed
+    // gravity.
     let tight = ring(PEG + 0.003 - 0.0005, 0.003);
     let level = capsule([0.0; 3], [0.0, 0.1, 0.0], PEG);
     for (judge, verdict) in JUDGES.iter().zip(verdicts(&tight, &level, &at(0.0, 0.05, 0.0))) {
@@ -105,7 +107,8 @@ fn what_is_wedged_is_not_honest() {
 
 #[test]
 fn a_little_play_is_enough_to_come_free() {
-    // The ring is free while it moves by 2.5 mm. Only in the last two milliseconds has it moved by more than the required 2 mm.
+    // The ring is free while it moves by 2.5 mm. Only in the last two milliseconds has it moved by more than the
+    // required 2 mm.
     let loose = ring(PEG + 0.003 + 0.00125, 0.003);
     let level = capsule([0.0; 3], [0.0, 0.1, 0.0], PEG);
     for (judge, verdict) in JUDGES.iter().zip(verdicts(&loose, &level, &at(0.0, 0.05, 0.0))) {
@@ -179,7 +182,8 @@ fn falling_gains_what_gravity_gives() {
 
 #[test]
 fn a_pendulum_keeps_time() {
-    // Two boards that lean against each other hang on a thin bar in the notch between them. Without friction the bar is a hinge.
+    // Two boards that lean against each other hang on a thin bar in the notch between them. Without friction the bar is
+    // a hinge.
     const BAR: f32 = 0.002;
     let mut object = Solid::default();
     for side in [-1.0, 1.0] {

@@ -1,5 +1,5 @@
-//! Tests of the shells that represent arbitrary meshes: they preserve the holes of the mesh, and verdicts on shells agree with
-//! those on exact parts.
+//! Tests of the shells that represent arbitrary meshes: they preserve the holes of the mesh, and verdicts on shells
+//! agree with those on exact parts.
 
 mod common;
 

@@ -9,7 +9,8 @@ use crate::memory::Limits;
 use crate::perception::sampling;
 use crate::{Monitor, Params};
 
-/// Largest inputs that the command accepts, about 700 MB of memory. They keep a wrong file from exhausting the computer.
+/// Largest inputs that the command accepts, about 700 MB of memory. They keep a wrong file from exhausting the
+/// computer.
 pub const LIMITS: Limits = Limits {
     vertices: 4_000_000,
     triangles: 2_000_000,

@@ -1,7 +1,7 @@
 //! Predicts hanging poses of unknown objects on unknown supporters, on a computer with files and a heap.
 //!
-//! This crate re-exports the core, [`hangpose_core`]. It adds readers of [`files`] and allocates the [`memory`] that the core
-//! takes from its caller. The command `hangpose` is built on it.
+//! This crate re-exports the core, [`hangpose_core`]. It adds readers of [`files`] and allocates the [`memory`] that
+//! the core takes from its caller. The command `hangpose` is built on it.
 //!
 //! ```no_run
 //! use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files, hanging, predict_poses};

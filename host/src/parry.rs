@@ -64,8 +64,8 @@ pub fn coordinates(vectors: &[math::Vector]) -> Vec<[f32; 3]> {
     vectors.iter().map(math::Vector::to_array).collect()
 }
 
-/// Converts a pose for parry and rapier. A hanging pose maps object to supporter coordinates, so the object's pose in the
-/// world is the supporter's pose in the world times this pose.
+/// Converts a pose for parry and rapier. A hanging pose maps object to supporter coordinates, so the object's pose in
+/// the world is the supporter's pose in the world times this pose.
 pub fn pose_to_parry(pose: &Pose) -> math::Pose {
     let rotation = math::Rotation::from_array(pose.rotation.coords.into());
     math::Pose::from_parts(math::Vector::from_array(pose.translation.vector.into()), rotation)

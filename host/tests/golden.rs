@@ -1,7 +1,7 @@
 //! Hashes of predictions on the samples, which are the same on every machine.
 //!
-//! A changed hash means that the method's numbers changed, not that they are wrong. After an intended change, use the new hash,
-//! which the failing test prints, and check that a Cortex-M7 gives it too.
+//! A changed hash means that the method's numbers changed, not that they are wrong. After an intended change, use the
+//! new hash, which the failing test prints, and check that a Cortex-M7 gives it too.
 
 use hangpose::hanging::{HangingPose, Rest};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files, predict_poses};

@@ -1,5 +1,5 @@
-//! The exit distance from a convex hull that is never built, compared with parry3d, which builds the hull, and with every plane
-//! through three points.
+//! The exit distance from a convex hull that is never built, compared with parry3d, which builds the hull, and with
+//! every plane through three points.
 
 mod random;
 
@@ -10,7 +10,8 @@ use parry3d::query::{Ray, RayCast};
 use parry3d::shape::ConvexPolyhedron;
 use random::Random;
 
-/// Half-spaces `normal . x <= offset` that contain all points, from every plane through three points; none for a flat set.
+/// Half-spaces `normal . x <= offset` that contain all points, from every plane through three points; none for a flat
+/// set.
 struct Planes(Vec<([f64; 3], f64)>);
 
 fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -173,9 +174,10 @@ fn every_plane_through_three_points() {
     }
 }
 
-/// parry3d casts the same ray from the inside of its hull of the same points. Differences are measured along the normal of the
-/// plane that is hit, because a grazing ray magnifies rounding errors, and are relative to the extent. parry's GJK iteration is
-/// less accurate on thin and clustered sets. On the sets of 20 points the planes through three points give the error of each.
+/// parry3d casts the same ray from the inside of its hull of the same points. Differences are measured along the normal
+/// of the plane that is hit, because a grazing ray magnifies rounding errors, and are relative to the extent. parry's
+/// GJK iteration is less accurate on thin and clustered sets. On the sets of 20 points the planes through three points
+/// give the error of each.
 #[test]
 fn parry() {
     let mut random = Random(2);

@@ -71,8 +71,8 @@ fn scissors() -> Mesh {
     mesh
 }
 
-/// A hook on a wall plate with its front at x = 0. The hook points along +x, long enough for a mug beside the plate, and its tip
-/// points up.
+/// A hook on a wall plate with its front at x = 0. The hook points along +x, long enough for a mug beside the plate,
+/// and its tip points up.
 fn hook() -> Mesh {
     let plate = Body::cuboid([-0.0025, 0.0, 0.0], [0.005, 0.04, 0.08], 0.001);
     let mut path = line([-0.003, 0.0, 0.0], [0.078, 0.0, 0.0], 27);

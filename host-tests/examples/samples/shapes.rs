@@ -1,7 +1,7 @@
 //! Closed triangle meshes by revolution, sweep, prism and chamfered box.
 //!
-//! The vertex order and the sweep's tangents differ from those of the library's builder, and the published bytes of `samples/`
-//! depend on both.
+//! The vertex order and the sweep's tangents differ from those of the library's builder, and the published bytes of
+//! `samples/` depend on both.
 
 use host_tests::shapes::vector::{
     V, add, cos_sin, cross, dot, face_outwards, frames, scale, sub, turn, unit,
@@ -68,8 +68,8 @@ impl Body {
         body.outward()
     }
 
-    /// An ellipse swept along a path without twist, with half axes `a`, initially along `side`, and `b`. A path that ends at its
-    /// first point gives a closed sweep. Otherwise `round` states for each end whether it is round or flat.
+    /// An ellipse swept along a path without twist, with half axes `a`, initially along `side`, and `b`. A path that
+    /// ends at its first point gives a closed sweep. Otherwise `round` states for each end whether it is round or flat.
     pub(crate) fn sweep(path: &[V], side: V, [a, b]: [f64; 2], count: usize, round: [bool; 2]) -> Self {
         let closed = path[0] == path[path.len() - 1];
         let n = if closed { path.len() - 1 } else { path.len() };
@@ -141,8 +141,8 @@ impl Body {
         body.outward()
     }
 
-    /// A box about `centre` with edges chamfered by `chamfer`: six rectangles, joined by strips along the edges and by triangles at
-    /// the corners.
+    /// A box about `centre` with edges chamfered by `chamfer`: six rectangles, joined by strips along the edges and by
+    /// triangles at the corners.
     pub(crate) fn cuboid(centre: V, size: V, chamfer: f64) -> Self {
         let mut body = Self::default();
         // Each corner has three vertices, one on each of the faces that meet there.

@@ -1,4 +1,5 @@
-//! Releases random candidate poses in the core, in Bullet and in ODE, and prints how often they agree on which come to rest.
+//! Releases random candidate poses in the core, in Bullet and in ODE, and prints how often they agree on which come to
+//! rest.
 
 use anyhow::Result;
 use clap::Parser;

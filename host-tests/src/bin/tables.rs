@@ -15,8 +15,8 @@ struct Arguments {
     /// Comma-separated profiles.
     #[arg(long, value_delimiter = ',', default_value = "paper,default")]
     profile: Vec<Profile>,
-    /// Number of generated pairs that fit. Two thirds as many that cannot hang, and a fifteenth as many on several contacts, are
-    /// added.
+    /// Number of generated pairs that fit. Two thirds as many that cannot hang, and a fifteenth as many on several
+    /// contacts, are added.
     #[arg(long, default_value_t = 600)]
     pairs: usize,
     /// Seed of the sizes.

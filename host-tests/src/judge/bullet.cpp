@@ -17,10 +17,11 @@ namespace {
 // centimetres: in metres, pendulums, depths and wedges come out wrong.
 constexpr double SCALE = 100;
 constexpr btScalar MARGIN = btScalar(0.0002 * SCALE);
-// Displacement at which a contact is discarded. Stale contacts hold the body: a pendulum on a thin bar is 2.4 % fast with 1 mm,
-// and 0.7 % fast with this value.
+// Displacement at which a contact is discarded. Stale contacts hold the body: a pendulum on a thin bar is 2.4 % fast
+// with 1 mm, and 0.7 % fast with this value.
 constexpr btScalar BREAKING = btScalar(0.0001 * SCALE);
-constexpr btScalar LOAD = btScalar(0.01 * SCALE);  // smallest load of a contact, as an acceleration: a thousandth of the weight
+// Smallest load of a contact, as an acceleration: a thousandth of the weight.
+constexpr btScalar LOAD = btScalar(0.01 * SCALE);
 
 btVector3 vector(const double* v, double scale = 1) {
     return {btScalar(v[0] * scale), btScalar(v[1] * scale), btScalar(v[2] * scale)};
@@ -37,8 +38,8 @@ struct Deepest : btCollisionWorld::ContactResultCallback {
     }
 };
 
-// A hull in the frame of its compound, for a quick separation test of two parts whose boxes overlap. Shells have so many such
-// pairs that Bullet's narrow phase would take nearly all of the time.
+// A hull in the frame of its compound, for a quick separation test of two parts whose boxes overlap. Shells have so
+// many such pairs that Bullet's narrow phase would take nearly all of the time.
 struct Facets {
     bool of_body;
     std::vector<btVector3> corners;
@@ -106,7 +107,7 @@ struct World {
         btRigidBody::btRigidBodyConstructionInfo of_body(static_cast<btScalar>(setup.mass), nullptr, &compound,
                                                          vector(setup.inertia, SCALE * SCALE));
         of_body.m_friction = friction;  // Bullet multiplies both coefficients; the fixed shapes have 1
-        of_body.m_angularDamping = btScalar(1 - std::exp(-setup.damping));  // Bullet's damping is the fraction lost per second
+        of_body.m_angularDamping = btScalar(1 - std::exp(-setup.damping));  // the fraction lost per second
         body = std::make_unique<btRigidBody>(of_body);
         body->setActivationState(DISABLE_DEACTIVATION);
         fixed.setCollisionShape(&fixed_compound);

@@ -1,5 +1,5 @@
-// Interface of a physics engine: one rigid body among fixed shapes. Units are metres, kilograms and seconds. The body frame has
-// its origin at the centre of mass and its axes along the principal axes. Mirrored in world.rs.
+// Interface of a physics engine: one rigid body among fixed shapes. Units are metres, kilograms and seconds. The body
+// frame has its origin at the centre of mass and its axes along the principal axes. Mirrored in world.rs.
 #pragma once
 #include <cstddef>
 #include <cstdint>

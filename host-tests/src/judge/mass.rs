@@ -15,8 +15,8 @@ pub struct Mass {
 }
 
 impl Mass {
-    /// Mass properties of a solid of uniform density and `mass` kilograms. Where bodies overlap, the volume counts twice. A
-    /// surface that is not closed, or has no volume, is a sheet of uniform thickness.
+    /// Mass properties of a solid of uniform density and `mass` kilograms. Where bodies overlap, the volume counts
+    /// twice. A surface that is not closed, or has no volume, is a sheet of uniform thickness.
     pub fn of(solid: &Solid, mass: f64) -> Self {
         let at = |index: u32| Vector3::from(solid.vertices[index as usize]).cast::<f64>();
         // An origin near the surface avoids cancellation.
@@ -59,8 +59,8 @@ struct Integrals {
 }
 
 impl Integrals {
-    /// Adds the integrals over a simplex of n dimensions: `determinant` of its edges, three `corners` (a tetrahedron's fourth is
-    /// the origin), and `factorials` of n, n + 1 and n + 2.
+    /// Adds the integrals over a simplex of n dimensions: `determinant` of its edges, three `corners` (a tetrahedron's
+    /// fourth is the origin), and `factorials` of n, n + 1 and n + 2.
     fn add(&mut self, determinant: f64, corners: [Vector3<f64>; 3], factorials: [f64; 3]) {
         let [a, b, c] = corners;
         let sum = a + b + c;

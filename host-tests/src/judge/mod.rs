@@ -1,8 +1,9 @@
 //! Verdicts on predicted poses by either of two physics engines, which simulate the release of the object.
 //!
-//! [`Bullet`] collides convex parts with convex parts. [`Ode`] collides the object's triangles with the supporter. The two share
-//! neither an engine nor an approximation of the shapes, so that their agreement has no common cause of error. Arbitrary meshes
-//! are represented by shells; their penetration at release is measured on the meshes themselves.
+//! [`Bullet`] collides convex parts with convex parts. [`Ode`] collides the object's triangles with the supporter. The
+//! two share neither an engine nor an approximation of the shapes, so that their agreement has no common cause of
+//! error. Arbitrary meshes are represented by shells; their penetration at release is measured on the meshes
+//! themselves.
 
 mod bullet;
 mod buried;
@@ -24,8 +25,8 @@ use nalgebra::Isometry3;
 
 /// Coefficient of friction between object and supporter.
 pub const FRICTION: f64 = 0.4;
-/// Damping rate of rotation, 1/s. Rigid bodies that roll on each other swing forever; real objects lose energy to friction,
-/// deformation and air. Translation is not damped.
+/// Damping rate of rotation, 1/s. Rigid bodies that roll on each other swing forever; real objects lose energy to
+/// friction, deformation and air. Translation is not damped.
 pub const DAMPING: f64 = 1.0;
 /// Gravitational acceleration along -z of the supporter, m/s².
 pub const GRAVITY: f64 = 9.81;

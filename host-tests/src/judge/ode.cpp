@@ -19,8 +19,8 @@ constexpr double ALIKE = 0.95;      // cosine of the angle above which normals a
 constexpr double LOAD = 0.01;       // smallest load of a contact, as an acceleration: a thousandth of the weight
 constexpr double LAYER = 0.00005;   // penetration that is not corrected, so that contacts persist, m
 
-// Lock for every collision, load and release of triangles. ODE may be built without thread-local data, as Debian's is; then all
-// threads share the caches of its triangle colliders.
+// Lock for every collision, load and release of triangles. ODE may be built without thread-local data, as Debian's is;
+// then all threads share the caches of its triangle colliders.
 std::mutex& colliders() {
     static std::mutex mutex;
     return mutex;
@@ -114,7 +114,8 @@ struct World {
                          [](const dContactGeom& x, const dContactGeom& y) { return x.depth > y.depth; });
     }
 
-    // Triangles produce many contacts at one place: of those that are close and have similar normals the deepest is kept.
+    // Triangles produce many contacts at one place: of those that are close and have similar normals the deepest is
+    // kept.
     void thin_out() {
         kept.clear();
         for (const dContactGeom& contact : all) {

@@ -1,7 +1,8 @@
 //! Penetration depth of two arbitrary surfaces.
 //!
-//! The depth is the usual one: the length of the shortest translation that separates the shapes. It is found by trial. An
-//! engine's depth for the prisms of a shell is not a measure of it, since it cannot exceed the thickness of the shell.
+//! The depth is the usual one: the length of the shortest translation that separates the shapes. It is found by trial.
+//! An engine's depth for the prisms of a shell is not a measure of it, since it cannot exceed the thickness of the
+//! shell.
 
 use super::Scene;
 use crate::solid::Solid;
@@ -14,11 +15,11 @@ use parry3d::shape::TriMesh;
 
 /// Lengths of the translations that are tried, m. The last one is also the depth of anything deeper.
 const SHIFTS: [f64; 8] = [0.00025, 0.0005, 0.001, 0.0015, 0.002, 0.004, 0.008, 0.016];
-/// Scale of the surfaces, from metres to millimetres: in metres, parry's tolerances make narrow triangles intersect that are
-/// far apart.
+/// Scale of the surfaces, from metres to millimetres: in metres, parry's tolerances make narrow triangles intersect
+/// that are far apart.
 const SCALE: f32 = 1000.0;
-/// Number of vertices of each shape that are tested for being inside the other. Without crossing surfaces one vertex per body
-/// would suffice.
+/// Number of vertices of each shape that are tested for being inside the other. Without crossing surfaces one vertex
+/// per body would suffice.
 const PROBES: usize = 8;
 
 /// An overlap test of an object and a supporter.

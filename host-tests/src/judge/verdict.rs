@@ -48,12 +48,12 @@ pub struct Verdict {
     pub clear: bool,
     /// After 4 s the object touches the supporter, has sunk less than the limit, and is slower than the limit.
     pub holds: bool,
-    /// With gravity reversed, the object comes free within 1.5 s: at some moment no contact force acts on it and it has moved.
-    /// An object that is wedged through the supporter does not. It need not leave the supporter: a ring lifts off a peg and
-    /// then hangs upwards. False if the object does not hold.
+    /// With gravity reversed, the object comes free within 1.5 s: at some moment no contact force acts on it and it has
+    /// moved. An object that is wedged through the supporter does not. It need not leave the supporter: a ring lifts
+    /// off a peg and then hangs upwards. False if the object does not hold.
     pub honest: bool,
-    /// From its rest pose the object stays under gravity tilted by 21.8 degrees towards each of four sides. False if the object
-    /// does not hold or the test was not run.
+    /// From its rest pose the object stays under gravity tilted by 21.8 degrees towards each of four sides. False if
+    /// the object does not hold or the test was not run.
     pub robust: bool,
     /// Measurements behind the verdict.
     pub figures: Figures,
@@ -89,7 +89,7 @@ pub struct Figures {
 
 /// Interval between observations, s.
 const LOOK: f64 = 0.01;
-/// Interval between observations under reversed gravity, s. An object in a hole with 2 mm of play is free for only 20 ms.
+/// Interval between observations under reversed gravity, s: in a hole with 2 mm of play an object is free for 20 ms.
 const LOOK_CLOSELY: f64 = 0.001;
 /// Speed of the fastest point of the object below which it counts as still, m/s.
 const STILL: f64 = 0.001;

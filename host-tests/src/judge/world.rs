@@ -93,7 +93,8 @@ impl World {
         world
     }
 
-    /// Adds a part to the body, with `into_body` from object to body coordinates, or to the fixed shapes if that is `None`.
+    /// Adds a part to the body, with `into_body` from object to body coordinates, or to the fixed shapes if that is
+    /// `None`.
     pub(super) fn add_part(&mut self, part: &Part, into_body: Option<&Isometry3<f64>>) {
         let body = into_body.is_some();
         let pose = into_body.copied().unwrap_or_default();
@@ -169,7 +170,8 @@ impl World {
         self.buried = Some(Buried::new(scene));
     }
 
-    /// Sets pose and velocities of the body and discards all contacts. `state.centre` is ignored; it follows from the pose.
+    /// Sets pose and velocities of the body and discards all contacts. `state.centre` is ignored; it follows from the
+    /// pose.
     pub fn place(&mut self, state: &State) {
         let body = state.pose * self.frame;
         let raw = RawState {
@@ -194,8 +196,8 @@ impl World {
         unsafe { (self.engine.pull)(self.handle, gravity.as_ptr()) }
     }
 
-    /// Simulates for `seconds`, rounded to at least one whole step. Returns the fraction of the steps in which a contact carried
-    /// load; grazing contacts do not count.
+    /// Simulates for `seconds`, rounded to at least one whole step. Returns the fraction of the steps in which a
+    /// contact carried load; grazing contacts do not count.
     pub fn pass(&mut self, seconds: f64) -> f64 {
         let steps = (seconds / self.time_step).round().max(1.0) as u32;
         // SAFETY: the handle is alive.

@@ -19,7 +19,8 @@ enum Convex {
     Cuboid(V, [V; 3], V),
 }
 
-/// Unit tangents at the distinct points of a path, and whether it is closed. A path is closed if it ends at its first point.
+/// Unit tangents at the distinct points of a path, and whether it is closed. A path is closed if it ends at its first
+/// point.
 fn tangents(path: &[V]) -> (Vec<V>, bool) {
     let is_closed = length(sub(path[0], path[path.len() - 1])) < 1e-9;
     let n = path.len() - usize::from(is_closed);
@@ -74,8 +75,8 @@ impl Builder {
         self.triangles.extend(triangles.into_iter().map(|t| t.map(|i| i + first)));
     }
 
-    /// Adds the body between consecutive convex polygons with equal numbers of corners. If closed, the first polygon also follows
-    /// the last. A first or last polygon of one point is a tip. Each pair gives one hull.
+    /// Adds the body between consecutive convex polygons with equal numbers of corners. If closed, the first polygon
+    /// also follows the last. A first or last polygon of one point is a tip. Each pair gives one hull.
     pub(crate) fn loft(&mut self, rings: &[Vec<V>], is_closed: bool) {
         self.skin(rings, is_closed);
         for i in 1..rings.len() + usize::from(is_closed) {
@@ -119,7 +120,8 @@ impl Builder {
         self.body(rings.iter().flatten().copied().collect(), triangles);
     }
 
-    /// Cross-sections perpendicular to a path, in rotation-minimising frames. `side` is the initial direction of the section's x.
+    /// Cross-sections perpendicular to a path, in rotation-minimising frames. `side` is the initial direction of the
+    /// section's x.
     fn rings(path: &[V], side: V, section: impl Fn(usize) -> Vec<[f64; 2]>) -> (Vec<Vec<V>>, bool) {
         let (tangents, is_closed) = tangents(path);
         let ring = |(i, [u, v]): (usize, [V; 2])| {
@@ -128,7 +130,8 @@ impl Builder {
         (frames(&tangents, side).into_iter().enumerate().map(ring).collect(), is_closed)
     }
 
-    /// Adds a convex polygon swept along a path, with flat ends. A path that ends at its first point gives a closed sweep.
+    /// Adds a convex polygon swept along a path, with flat ends. A path that ends at its first point gives a closed
+    /// sweep.
     pub(crate) fn sweep(&mut self, path: &[V], side: V, section: &[[f64; 2]]) {
         let (rings, is_closed) = Self::rings(path, side, |_| section.to_vec());
         self.loft(&rings, is_closed);
@@ -177,8 +180,8 @@ impl Builder {
         self.parts.extend(path.windows(2).map(|p| Convex::Capsule(p[0], p[1], radius)));
     }
 
-    /// Adds the solid of revolution of an outline of (radius, z) about the z axis, with one hull per step of the outline. The
-    /// outline may begin and end on the axis.
+    /// Adds the solid of revolution of an outline of (radius, z) about the z axis, with one hull per step of the
+    /// outline. The outline may begin and end on the axis.
     pub(crate) fn lathe(&mut self, outline: &[[f64; 2]]) {
         let count = corners_of(outline.iter().fold(0.0, |most, p| p[0].max(most)));
         let ring = |&[r, z]: &[f64; 2]| match r {
@@ -201,8 +204,8 @@ impl Builder {
         self.place(&ball, [X, Y, Z], centre);
     }
 
-    /// Adds a hollow body of revolution about the z axis: each two consecutive pairs of (radius, z) span a convex quadrilateral,
-    /// which is revolved. The first pair may lie on the axis.
+    /// Adds a hollow body of revolution about the z axis: each two consecutive pairs of (radius, z) span a convex
+    /// quadrilateral, which is revolved. The first pair may lie on the axis.
     pub(crate) fn revolve(&mut self, wall: &[[[f64; 2]; 2]]) {
         const COUNT: usize = 24;
         let at = |[r, z]: [f64; 2], i: usize| {
@@ -237,7 +240,8 @@ impl Builder {
         }
     }
 
-    /// Adds a band in the x-y plane, from `low` to `high` in z: each two consecutive pairs of points span a convex quadrilateral.
+    /// Adds a band in the x-y plane, from `low` to `high` in z: each two consecutive pairs of points span a convex
+    /// quadrilateral.
     pub(crate) fn strip(&mut self, pairs: &[[[f64; 2]; 2]], [low, high]: [f64; 2], is_closed: bool) {
         let ring = |&[a, b]: &[[f64; 2]; 2]| {
             vec![[a[0], a[1], low], [b[0], b[1], low], [b[0], b[1], high], [a[0], a[1], high]]

@@ -11,18 +11,18 @@ const STEEP: f64 = 0.9;
 /// Smallest sine of the tilt of a bar that carries a hollow.
 const UPWARD: f64 = 0.35;
 
-/// Whether the object can hang on the supporter: some opening is wider than some bar by 1 mm of play, and the object has room
-/// there. Doubtful cases count as no. The further rules are:
+/// Whether the object can hang on the supporter: some opening is wider than some bar by 1 mm of play, and the object
+/// has room there. Doubtful cases count as no. The further rules are:
 ///
 /// - A hole needs a bar with a free end; a hook goes over any bar.
-/// - The clear radius of a hole or hook is reduced by the cosine of the angle between its axis and the bar when the object hangs
-///   straight down, and by the cosine of the bar's tilt.
-/// - The object hangs by the centre of its opening at the outer end of the bar's usable length, with either face to the wall.
-///   No vertex may be behind the wall's plane or below the stand's foot. The object may lean on the wall by up to 20°. The bar
-///   must be long enough for the thickness of the part that lies on it.
+/// - The clear radius of a hole or hook is reduced by the cosine of the angle between its axis and the bar when the
+///   object hangs straight down, and by the cosine of the bar's tilt.
+/// - The object hangs by the centre of its opening at the outer end of the bar's usable length, with either face to the
+///   wall. No vertex may be behind the wall's plane or below the stand's foot. The object may lean on the wall by up to
+///   20°. The bar must be long enough for the thickness of the part that lies on it.
 /// - If the bar has a neighbour, every part of the object that is not below the bar must end before the neighbour.
-/// - A hollow needs a bar that points up by 20° or more, is a quarter as long as the hollow is deep, and ends as far from the
-///   wall as half the radius of the hollow.
+/// - A hollow needs a bar that points up by 20° or more, is a quarter as long as the hollow is deep, and ends as far
+///   from the wall as half the radius of the hollow.
 /// - A neck needs a gap that is wider than the stem with its play, and narrower than the head by 4 mm on each side.
 pub fn fits(object: &HangObject, support: &Support) -> bool {
     let centroid = centroid(&object.solid);
@@ -67,7 +67,8 @@ fn goes_over(object: &HangObject, opening: &Opening, centroid: V, bar: &Bar) -> 
     if direction[2].abs() > STEEP || (opening.kind == OpeningKind::Hole && !bar.has_free_end) {
         return false;
     }
-    // In the hanging pose the centroid is straight below the opening, and the opening's axis is along the bar seen from above.
+    // In the hanging pose the centroid is straight below the opening, and the opening's axis is along the bar seen from
+    // above.
     let (centre, axis) = (double(opening.centre), double(opening.axis));
     let mut reach = sub(centroid, centre);
     if length(across(reach, axis)) < 1e-3 * f64::from(opening.clear_radius) {
@@ -94,8 +95,8 @@ fn goes_over(object: &HangObject, opening: &Opening, centroid: V, bar: &Bar) -> 
 const FACES_AND_LEANS: [(f64, f64); 6] =
     [(1.0, 0.0), (-1.0, 0.0), (1.0, 10.0), (-1.0, 10.0), (1.0, 20.0), (-1.0, 20.0)];
 
-/// Whether the opening is wide enough for the bar and the object touches neither wall nor foot. The object hangs with the given
-/// object directions pointing out from the wall, aside and down.
+/// Whether the opening is wide enough for the bar and the object touches neither wall nor foot. The object hangs with
+/// the given object directions pointing out from the wall, aside and down.
 fn has_room(object: &HangObject, opening: &Opening, [out, aside, down]: [V; 3], bar: &Bar) -> bool {
     let (centre, axis, direction) = (double(opening.centre), double(opening.axis), double(bar.direction));
     let level = length([direction[0], direction[1], 0.0]);

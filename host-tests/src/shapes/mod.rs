@@ -1,7 +1,7 @@
 //! Objects and supporters of many kinds, generated from a seed with realistic sizes.
 //!
-//! All are closed surfaces with convex parts that fill them, in metres. An object has its own frame. A supporter has z up; on a
-//! wall, the front of its plate is at x = 0 and it points towards +x.
+//! All are closed surfaces with convex parts that fill them, in metres. An object has its own frame. A supporter has z
+//! up; on a wall, the front of its plate is at x = 0 and it points towards +x.
 //!
 //! Whether an object fits on a supporter follows from their construction, independent of any predictor: see [`fits`].
 
@@ -85,8 +85,8 @@ pub struct Opening {
     pub centre: [f32; 3],
     /// Unit vector along that bar.
     pub axis: [f32; 3],
-    /// Radius of that bar, m. The bar is straight and extends at least 5 mm to both sides. For a [`OpeningKind::Neck`], the radius
-    /// of the stem.
+    /// Radius of that bar, m. The bar is straight and extends at least 5 mm to both sides. For a [`OpeningKind::Neck`],
+    /// the radius of the stem.
     pub clear_radius: f32,
 }
 
@@ -110,15 +110,15 @@ pub struct Bar {
     pub length: f32,
     /// Radius of the bar, m.
     pub radius: f32,
-    /// Radius that an opening must pass on the way to the bar, such as that of a ball at its end, m. At least `radius`; infinite
-    /// if no opening can enclose the bar, which can then only hold a [`OpeningKind::Neck`].
+    /// Radius that an opening must pass on the way to the bar, such as that of a ball at its end, m. At least `radius`;
+    /// infinite if no opening can enclose the bar, which can then only hold a [`OpeningKind::Neck`].
     pub pass_radius: f32,
     /// Elevation of `direction` above the horizontal, rad.
     pub tilt: f32,
     /// Whether a hole can pass over the end.
     pub has_free_end: bool,
-    /// Horizontal unit vector away from the wall or post that holds the bar, and the distance of `position` from it, m. `None` if
-    /// nothing is in the way.
+    /// Horizontal unit vector away from the wall or post that holds the bar, and the distance of `position` from it, m.
+    /// `None` if nothing is in the way.
     pub wall: Option<([f32; 3], f32)>,
     /// Free height below `position`, m; infinite on a wall.
     pub drop: f32,

@@ -77,8 +77,8 @@ pub fn turn(degrees: f64) -> [f64; 2] {
     cos_sin(degrees * PI / 180.0)
 }
 
-/// `steps` + 1 points on an arc about `centre`, from `from` to `to` degrees. 0 is along `x` and 90 along `y`; the lengths of
-/// the two vectors are the arc's radii.
+/// `steps` + 1 points on an arc about `centre`, from `from` to `to` degrees. 0 is along `x` and 90 along `y`; the
+/// lengths of the two vectors are the arc's radii.
 pub fn arc(centre: V, x: V, y: V, [from, to]: [f64; 2], steps: usize) -> Vec<V> {
     (0..=steps)
         .map(|i| {
@@ -100,8 +100,8 @@ pub fn bezier(controls: [V; 4], steps: usize) -> Vec<V> {
         .collect()
 }
 
-/// A polygon whose corners are rounded by curves that begin `round` metres before each corner. The path of a closed polygon
-/// ends at its first point.
+/// A polygon whose corners are rounded by curves that begin `round` metres before each corner. The path of a closed
+/// polygon ends at its first point.
 pub fn rounded(corners: &[V], round: f64, is_closed: bool) -> Vec<V> {
     let n = corners.len();
     let mut path = Vec::new();
@@ -128,8 +128,8 @@ pub fn rounded(corners: &[V], round: f64, is_closed: bool) -> Vec<V> {
     path
 }
 
-/// Rotation-minimising frames of a path, one for each of its unit tangents: two unit vectors perpendicular to the tangent,
-/// the first and then the tangent × the first. The first frame is the one closest to `side`.
+/// Rotation-minimising frames of a path, one for each of its unit tangents: two unit vectors perpendicular to the
+/// tangent, the first and then the tangent × the first. The first frame is the one closest to `side`.
 pub fn frames(tangents: &[V], side: V) -> Vec<[V; 2]> {
     let carried = |u: &mut V, &t: &V| {
         *u = unit(across(*u, t));
@@ -138,7 +138,8 @@ pub fn frames(tangents: &[V], side: V) -> Vec<[V; 2]> {
     tangents.iter().scan(side, carried).collect()
 }
 
-/// Reverses the triangles of a closed surface if it is inside out, so that they are counter-clockwise seen from outside.
+/// Reverses the triangles of a closed surface if it is inside out, so that they are counter-clockwise seen from
+/// outside.
 pub fn face_outwards(vertices: &[V], triangles: &mut [[usize; 3]]) {
     let volume: f64 = triangles
         .iter()

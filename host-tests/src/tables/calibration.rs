@@ -7,8 +7,8 @@ use std::fmt::Write;
 /// Bounds of the bins of probability, narrower where most poses are.
 const BINS: [f32; 8] = [0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.975, 1.0];
 
-/// Reliability of the probabilities of the best poses, as a table and a plot; empty without probabilities. Further poses are
-/// only simulated while none hangs, so they would be a biased sample.
+/// Reliability of the probabilities of the best poses, as a table and a plot; empty without probabilities. Further
+/// poses are only simulated while none hangs, so they would be a biased sample.
 pub(super) fn table(rows: &[&Row]) -> String {
     let poses: Vec<(Said, bool)> = rows
         .iter()

@@ -49,8 +49,8 @@ pub enum Fit {
 /// Largest number of draws of sizes for a pair that fits, after which the next pair of kinds is tried.
 const TRIES: u64 = 30;
 
-/// Generates `pairs` pairs that fit, cycling through all hangable kinds of objects and all kinds of supporters, and two thirds
-/// as many pairs that cannot hang.
+/// Generates `pairs` pairs that fit, cycling through all hangable kinds of objects and all kinds of supporters, and two
+/// thirds as many pairs that cannot hang.
 pub fn made(pairs: usize, seed: u64) -> Vec<Case> {
     let kinds =
         |is_hangable| OBJECTS.iter().filter(move |kind| kind.is_hangable == is_hangable).collect::<Vec<_>>();

@@ -26,8 +26,8 @@ struct Loaded {
     solid: Arc<Solid>,
 }
 
-/// Pairs of every object with every supporter: at most `pairs` that may hang, spread evenly over the list, and at most half as
-/// many that cannot.
+/// Pairs of every object with every supporter: at most `pairs` that may hang, spread evenly over the list, and at most
+/// half as many that cannot.
 pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
     let path = folder.join("manifest.json");
     let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;

@@ -44,8 +44,8 @@ pub struct Options<'a> {
     pub gallery: Option<&'a Path>,
 }
 
-/// Predicts and judges every case under every profile. Returns all rows, including those of the record. `tell` is called with
-/// the number of finished rows and the total.
+/// Predicts and judges every case under every profile. Returns all rows, including those of the record. `tell` is
+/// called with the number of finished rows and the total.
 pub fn run(
     cases: &[Case],
     options: &Options,

@@ -10,8 +10,8 @@ fn point(at: Vector3<f32>) -> Point {
     at.into()
 }
 
-/// Adds one body between rings of points, each counter-clockwise seen from the next one. The ends of open tubes are closed by fans
-/// around the centres of the first and last ring. In closed tubes the first ring follows the last.
+/// Adds one body between rings of points, each counter-clockwise seen from the next one. The ends of open tubes are
+/// closed by fans around the centres of the first and last ring. In closed tubes the first ring follows the last.
 fn tube(solid: &mut Solid, rings: &[Vec<Vector3<f32>>], closed: bool) {
     let sides = rings[0].len() as u32;
     let first = solid.vertices.len() as u32;

@@ -109,9 +109,9 @@ fn tell(path: &Path, notes: &[String], warning: &Option<String>) {
 }
 
 /// Largest plausible extent of an object or supporter, m.
-const TOO_LARGE: f32 = 5.0;
+pub(super) const TOO_LARGE: f32 = 5.0;
 /// Smallest plausible extent of an object or supporter, m.
-const TOO_SMALL: f32 = 0.005;
+pub(super) const TOO_SMALL: f32 = 0.005;
 
 impl Placement {
     fn apply(&self, points: &mut [[f32; 3]]) {

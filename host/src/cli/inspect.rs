@@ -1,6 +1,6 @@
 //! `hangpose inspect`.
 
-use super::input::{self, Placed, Placement};
+use super::input::{self, Placed, Placement, TOO_LARGE, TOO_SMALL};
 use super::json::{self, InspectedObject, InspectedSupporter};
 use super::{InspectArguments, Role, terminal};
 use anyhow::Result;
@@ -182,7 +182,8 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
 const SHOWN: usize = 10;
 
 fn scale(warning: &Option<String>) -> String {
-    format!("scale           {}\n", warning.as_deref().unwrap_or("plausible for a hand-held object"))
+    let plausible = || format!("plausible, between {TOO_SMALL} and {TOO_LARGE} m");
+    format!("scale           {}\n", warning.clone().unwrap_or_else(plausible))
 }
 
 /// Whether the mesh bounds a volume, in words.

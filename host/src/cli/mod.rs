@@ -28,8 +28,8 @@ const EXAMPLE: &str = "Example: hangpose predict --object samples/mug.obj --supp
 pub(crate) enum Command {
     /// Predict poses in which an object hangs on a supporter, best first.
     ///
-    /// A pose maps object coordinates to supporter coordinates. Both frames are in metres with z up, after the options for
-    /// scale and up axis are applied.
+    /// A pose maps object coordinates to supporter coordinates. Both frames are in metres with z up, after the options
+    /// for scale and up axis are applied.
     ///
     /// Exit status: 0 poses were found, 3 nothing hangs (the JSON gives the reason), 1 bad input, 2 bad usage.
     Predict(PredictArguments),

@@ -10,12 +10,12 @@
 //! | cloud | `pcd`      | text, binary and compressed; missing (NaN) points are dropped |
 //! | cloud | `xyz`, `txt`, `pts` | `x y z` or `x y z nx ny nz` per line |
 //!
-//! Coordinates are returned as in the file. Only glTF has a unit, and no format is rotated or scaled here. glTF is y-up by
-//! its specification; the caller states the up axis.
+//! Coordinates are returned as in the file. Only glTF has a unit, and no format is rotated or scaled here. glTF is y-up
+//! by its specification; the caller states the up axis.
 //!
-//! Vertices with bitwise equal coordinates are merged, so that a solid is closed in every format. The `notes` report what a
-//! reader changed. A file that cannot be read is a [`FileError`] that names the place and the remedy. No file makes a reader
-//! panic, or reserve memory out of proportion to the length of the file.
+//! Vertices with bitwise equal coordinates are merged, so that a solid is closed in every format. The `notes` report
+//! what a reader changed. A file that cannot be read is a [`FileError`] that names the place and the remedy. No file
+//! makes a reader panic, or reserve memory out of proportion to the length of the file.
 
 mod cloud;
 mod error;

@@ -1,7 +1,7 @@
 //! PLY, a format for meshes and point clouds.
 //!
-//! ply-rs-bw reads the header and binary bodies. Text bodies are read here, because its grammar accepts neither `.5`, `1.` and
-//! empty lines nor `nan`, which needs an error message of its own.
+//! ply-rs-bw reads the header and binary bodies. Text bodies are read here, because its grammar accepts neither `.5`,
+//! `1.` and empty lines nor `nan`, which needs an error message of its own.
 
 use std::io::Cursor;
 

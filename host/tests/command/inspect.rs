@@ -96,7 +96,7 @@ fn people_read_the_same_as_programs() {
 }
 
 #[test]
-fn an_open_mesh_is_open_and_an_inverted_one_told() {
+fn open_and_inverted_meshes_are_reported() {
     let scene = Scene::new();
     let (vertices, mut triangles) = shapes::weighted_ring();
     triangles.pop();
@@ -115,7 +115,7 @@ fn an_open_mesh_is_open_and_an_inverted_one_told() {
 }
 
 #[test]
-fn nothing_to_hang_by_is_no_error() {
+fn no_candidates_are_no_error() {
     let run = run!("inspect", Scene::new().ball);
     assert_eq!(run.status, Some(0));
     assert!(run.stdout.contains("of which 0 are tried"), "{}", run.stdout);

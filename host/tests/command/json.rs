@@ -61,7 +61,7 @@ fn pose(entry: &Value, name: &str) -> [f64; 16] {
 }
 
 #[test]
-fn poses_come_to_rest_and_say_how_firmly() {
+fn poses_come_to_rest_with_margins() {
     let scene = Scene::new();
     for (object, supporter) in [
         (scene.ring.clone(), scene.peg.clone()),
@@ -135,7 +135,8 @@ fn the_ring_hangs_on_the_peg_with_the_weight_below() {
     let [best] = &document["poses"].as_array().unwrap()[..] else { panic!("--top 1") };
     let rest = pose(best, "rest_pose");
     assert_hangs_by_the_ring(best);
-    // It rests on one contact. The normal force is the component of the weight along the normal; friction carries the rest.
+    // It rests on one contact. The normal force is the component of the weight along the normal; friction carries the
+    // rest.
     let [contact] = &best["contacts"].as_array().unwrap()[..] else { panic!("{}", best["contacts"]) };
     let (force, [_, _, up]) = (number(&contact["force"]), numbers::<3>(&contact["normal"]));
     assert!((force - up).abs() < 0.01, "the normal force is not the weight along the normal: {contact}");
@@ -320,7 +321,7 @@ fn a_given_centre_of_mass_hangs_below() {
 }
 
 #[test]
-fn profiles_and_params_files_are_told_back() {
+fn the_document_has_the_effective_params() {
     let scene = Scene::new();
     let file = scene.write("few.toml", "samples = 3000\nseed = 5\ncollision_weight = 0.5\n");
     let document = scene.predict(&["--profile", "paper", "--params", file.to_str().unwrap(), "--seed", "6"]);

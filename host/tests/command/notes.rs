@@ -14,7 +14,7 @@ fn said(scene: &Scene, supporter: &Path, options: &[&str]) -> String {
 }
 
 #[test]
-fn clean_input_needs_no_words() {
+fn clean_input_gives_no_messages() {
     let scene = Scene::new();
     assert_eq!(said(&scene, &scene.peg, &[]), "");
     let mesh = scene.write("peg.obj", shapes::obj(&shapes::peg_mesh()));
@@ -110,7 +110,7 @@ fn a_centre_of_mass_outside_the_object_is_odd() {
 }
 
 #[test]
-fn changes_to_a_mesh_are_told() {
+fn changes_to_a_mesh_are_reported() {
     let scene = Scene::new();
     let text = shapes::obj(&shapes::weighted_ring()) + "v 9 9 9\nf 1 1 1\n";
     let odd = scene.write("odd.obj", text);

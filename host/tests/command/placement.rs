@@ -55,7 +55,8 @@ fn millimetres_give_the_same_poses() {
     let options =
         ["--profile", "paper", "--top", "1", "--object-scale", "0.001", "--supporter-scale", "0.001"];
     let millimetres = scene.predict_with(&object, &supporter, &options)["poses"][0].clone();
-    // The last bit of a coordinate may differ, and with it the choice among equal candidates. The site must be the same.
+    // The last bit of a coordinate may differ, and with it the choice among equal candidates. The site must be the
+    // same.
     for site in ["object_site", "supporter_site"] {
         let [a, b] = [&metres, &millimetres].map(|pose| numbers(&pose[site]["position"]));
         assert!(distance(a, b) < 0.002, "{site}: {a:?}, {b:?}");

@@ -63,7 +63,8 @@ pub(crate) fn assert_hangs_by_the_ring(entry: &Value) {
     }
 }
 
-/// Height of the weighted ring's centre of mass, which lies on the z axis: the volume of the ring is by Pappus' theorem.
+/// Height of the weighted ring's centre of mass, which lies on the z axis: the volume of the ring is by Pappus'
+/// theorem.
 pub(crate) fn weighted_ring_centre_z() -> f64 {
     let ring = PI * WIRE_RADIUS.powi(2) * TAU * RING_RADIUS;
     let weight = 8.0 * WEIGHT.iter().product::<f64>();

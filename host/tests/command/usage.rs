@@ -34,7 +34,7 @@ fn wrong_usage_has_its_own_status() {
 }
 
 #[test]
-fn help_tells_of_every_option_and_status() {
+fn help_lists_every_option_and_status() {
     let run = run!("--help");
     assert_eq!(run.status, Some(0));
     assert!(["predict", "inspect", "Example: hangpose predict"].iter().all(|part| run.stdout.contains(part)));

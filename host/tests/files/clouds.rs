@@ -77,7 +77,7 @@ fn xyz_takes_comments_separators_and_a_count() {
 }
 
 #[test]
-fn xyz_tells_colours_from_normals() {
+fn xyz_distinguishes_colours_from_normals() {
     let cloud = |content: &str| cloud("scan.xyz", content).unwrap();
     let colours = cloud("1 2 3 255 128 0\n4 5 6 1 0 0\n");
     assert_eq!((colours.points.len(), colours.normals), (2, None));

@@ -53,7 +53,8 @@ fn a_text_stl_may_hold_several_solids_and_odd_normals() {
 
 #[test]
 fn obj_merges_groups_and_knows_every_form_of_corner() {
-    // The cube with negative indices, textures, normals, colours, a weight, a continued line, a polyline and an old code page.
+    // The cube with negative indices, textures, normals, colours, a weight, a continued line, a polyline and an old
+    // code page.
     let content = b"mtllib missing.mtl\no \xfc\nv 0 0 0 0.5 0.5 0.5\nv 1 0 0\nv 0 1 0\nv 1 1 0\n\
         v 0 0 1\nv 2 0 2 2\nv 0 1 1\nv 1 1 1\nvt 0.5\nvt 0 0\nvn 0 0 1\n\
         g\nusemtl\nl 1 2 3\np 1\nf 1 3 4 2\ng one two\ns 1\nf -4 -3 -1 -2\no other\nf 1/1 2/1 6/2 5/2\n\

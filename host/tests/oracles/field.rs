@@ -8,10 +8,11 @@ use hangpose_core::{Monitor, Params};
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
 
-/// Bound on the error within the band, in voxels. The documented error is about half a voxel at sharp edges and thin walls.
+/// Bound on the error within the band, in voxels. The documented error is about half a voxel at sharp edges and thin
+/// walls.
 const WITHIN_BAND: f32 = 0.6;
-/// Bound on the share of points in the band with an error above 0.1 voxels. Away from edges the error is a few hundredths of a
-/// voxel; 0.10 was found on the scissors, which are all edges.
+/// Bound on the share of points in the band with an error above 0.1 voxels. Away from edges the error is a few
+/// hundredths of a voxel; 0.10 was found on the scissors, which are all edges.
 const SELDOM: f64 = 0.15;
 /// Bound on the overestimate beyond the band, in voxels, which allows for rounding.
 const ROUNDING: f32 = 1e-3;

@@ -1,7 +1,7 @@
 //! Meshes from files, which may have several bodies, openings, duplicate faces and needle triangles.
 //!
-//! The environment variable `HANGPOSE_MESHES` names a directory; every mesh below it is checked. The default is the samples of
-//! the repository.
+//! The environment variable `HANGPOSE_MESHES` names a directory; every mesh below it is checked. The default is the
+//! samples of the repository.
 
 use crate::random::Random;
 use crate::shapes::Shape;

@@ -8,8 +8,8 @@ use hangpose_core::memory::Limits;
 use hangpose_core::{Monitor, Params};
 use nalgebra::{Point3, Vector3};
 
-/// Bound on the relative error of a squared distance, in `f32::EPSILON`. Three differences, three products and two sums each
-/// round by half of one.
+/// Bound on the relative error of a squared distance, in `f32::EPSILON`. Three differences, three products and two sums
+/// each round by half of one.
 const SQUARE: f64 = 4.0;
 
 /// Point sets that are difficult for trees.

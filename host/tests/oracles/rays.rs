@@ -1,9 +1,9 @@
 //! Ray casts.
 //!
-//! A hit can differ from parry's and be correct, because one rounding decides which side of an edge a ray passes. The tests
-//! therefore require that every hit is on the mesh, and that no triangle in front of the hit is missed that the ray meets
-//! farther than a few roundings from its border. On an oblique ray a rounding moves the hit by 1 / cos of the angle to the
-//! normal. From inside a closed mesh every ray must hit, even at an edge.
+//! A hit can differ from parry's and be correct, because one rounding decides which side of an edge a ray passes. The
+//! tests therefore require that every hit is on the mesh, and that no triangle in front of the hit is missed that the
+//! ray meets farther than a few roundings from its border. On an oblique ray a rounding moves the hit by 1 / cos of the
+//! angle to the normal. From inside a closed mesh every ray must hit, even at an edge.
 
 use crate::random::Random;
 use crate::shapes::{self, Shape};
@@ -11,8 +11,8 @@ use crate::truth::Truth;
 use hangpose_core::geometry::{Point, Surface, Vector};
 use nalgebra::{Point3, Vector3};
 
-/// Bound on the distance of a hit from the mesh, and behind parry's hit along the normal, in roundings. 1.5 and 1.3 were
-/// found. A dozen operations round, seldom in the same direction.
+/// Bound on the distance of a hit from the mesh, and behind parry's hit along the normal, in roundings. 1.5 and 1.3
+/// were found. A dozen operations round, seldom in the same direction.
 const BOUND: f64 = 4.0;
 
 /// Largest errors, in roundings, and numbers of rays.

@@ -33,7 +33,8 @@ fn spacing(points: &[Point]) -> impl Iterator<Item = f64> {
 
 #[test]
 fn samples_are_on_the_mesh_and_have_the_normals_of_its_triangles() {
-    /// Bound on the distance from the surface, in roundings: a sum of three products rounds half a dozen times by a half.
+    /// Bound on the distance from the surface, in roundings: a sum of three products rounds half a dozen times by a
+    /// half.
     const OFF: f64 = 4.0;
     /// Bound on the error of a normal times the aspect ratio: a cross product of edges has an error of a few roundings.
     const NORMAL: f64 = 8.0 * f32::EPSILON as f64;
@@ -71,8 +72,9 @@ fn samples_of_a_plane_keep_their_distance_and_leave_no_hole() {
             // Yuksel reports 0.6 to 0.75 of the spacing of the best packing.
             let least = spacing(&points).fold(f64::INFINITY, f64::min);
             assert!(least > 0.6 * widest, "{count} {seed}: {}", least / widest);
-            // A point farther from all samples than their spacing could hold another sample. The best packing leaves gaps
-            // of 0.58 of its spacing. Samples chosen from random candidates inherit the gaps of these: up to 1.03 was found.
+            // A point farther from all samples than their spacing could hold another sample. The best packing leaves
+            // gaps of 0.58 of its spacing. Samples chosen from random candidates inherit the gaps of these: up to 1.03
+            // was found.
             let mut random = Random(seed);
             for _ in 0..2000 {
                 let place = Point::new(0.5, random.unit() as f32 - 0.5, random.unit() as f32 - 0.5);
@@ -108,7 +110,7 @@ fn every_part_of_the_surface_is_as_likely() {
     }
     let expected = runs as f64 * count as f64 / 24.0;
     let chi_squared: f64 = counts.iter().map(|&n| (f64::from(n) - expected).powi(2) / expected).sum();
-    // The 99.9 % quantile for 23 degrees of freedom for independent samples; evenly spread samples vary less. Without a random
-    // position for each candidate the fine side had a third fewer samples than the others: 483.
+    // The 99.9 % quantile for 23 degrees of freedom for independent samples; evenly spread samples vary less. Without a
+    // random position for each candidate the fine side had a third fewer samples than the others: 483.
     assert!(chi_squared < 49.7, "{chi_squared}: {counts:?}");
 }

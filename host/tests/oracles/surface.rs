@@ -6,14 +6,14 @@ use crate::truth::Truth;
 use hangpose_core::geometry::{Point, Surface};
 use nalgebra::Point3;
 
-/// Bound on the error of a distance, and on the distance of the closest point from the mesh, in roundings. 1.5 and 0.7 were
-/// found.
+/// Bound on the error of a distance, and on the distance of the closest point from the mesh, in roundings. 1.5 and 0.7
+/// were found.
 const DISTANCE: f64 = 4.0;
-/// Bound on the error of the winding number, a quarter above the bound that [`Surface::winding_number`] documents. 0.19 was
-/// found, on a bottle with thin walls. Without the approximation of distant parts the error is 2e-5.
+/// Bound on the error of the winding number, a quarter above the bound that [`Surface::winding_number`] documents. 0.19
+/// was found, on a bottle with thin walls. Without the approximation of distant parts the error is 2e-5.
 const WINDING: f64 = 0.25;
-/// Distance from the mesh, in diagonals of its bounding box, below which only the sign is checked. There single triangles
-/// decide the winding number, and thin ones are subject to rounding.
+/// Distance from the mesh, in diagonals of its bounding box, below which only the sign is checked. There single
+/// triangles decide the winding number, and thin ones are subject to rounding.
 const CLOSE: f64 = 1e-4;
 
 /// Largest errors; distances in roundings.

@@ -5,7 +5,8 @@ use super::super::vector::{V, X, Y, Z, add, arc, bezier, rounded, scale, turn};
 use super::super::{Bar, Random, Support};
 use super::{bar, plate};
 
-/// Adds a J in front of a wall: from `top` down by `drop`, round a half circle of radius `bend`, and up to `rise` above its centre.
+/// Adds a J in front of a wall: from `top` down by `drop`, round a half circle of radius `bend`, and up to `rise` above
+/// its centre.
 fn j(builder: &mut Builder, top: V, [drop, bend, rise]: [f64; 3], radius: f64) -> Bar {
     let centre = add(top, [bend, 0.0, -drop]);
     let mut path = vec![[-0.001, top[1], top[2]], top];
@@ -69,7 +70,7 @@ pub(super) fn s_hook(random: &mut Random) -> Support {
     path.extend(arc(centre, scale(Y, lower), scale(Z, lower), [180.0, 380.0], 16));
     builder.tube(&path, radius);
     let lowest = add(centre, [0.0, 0.0, -lower]);
-    // Its mouth looks to +y, the upper one's to -y.
+    // The mouth of the lower bend opens to +y, that of the upper bend to -y.
     let mut ground = bar(add(lowest, [0.0, -0.3 * lower, 0.0]), add(lowest, [0.0, 0.3 * lower, 0.0]), radius);
     ground.wall = Some((super::super::vector::single(X), off as f32));
     Support { solid: builder.finish(), bars: vec![ground] }

@@ -92,7 +92,8 @@ impl RawCloud {
     }
 }
 
-/// Normalises all normals that are not zero. Returns the number of zero normals and of those that were not of unit length.
+/// Normalises all normals that are not zero. Returns the number of zero normals and of those that were not of unit
+/// length.
 fn normalise(normals: &mut [[f32; 3]]) -> (usize, usize) {
     // Error in length of a normal written with three decimals.
     const FAR: f64 = 2e-3;

@@ -50,8 +50,8 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
     Ok(cloud)
 }
 
-/// Rejects sizes that exceed the length of the file. pcd-rs 0.13 trusts the header: it would reserve the claimed size of a
-/// compressed file, index past the end of the decompressed data, and overflow when it sums counts.
+/// Rejects sizes that exceed the length of the file. pcd-rs 0.13 trusts the header: it would reserve the claimed size
+/// of a compressed file, index past the end of the decompressed data, and overflow when it sums counts.
 fn check_lengths(source: &Source<'_>, meta: &PcdMeta, body: usize) -> Result<(), FileError> {
     let held = (source.bytes.len() - body) as u64;
     let too_few = |wanted: &str| {

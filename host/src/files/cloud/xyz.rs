@@ -7,8 +7,8 @@ use super::RawCloud;
 
 /// Reads `x y z`, or `x y z nx ny nz`, separated by spaces, tabs, commas or semicolons.
 ///
-/// Of `x y z intensity`, `x y z r g b` and `x y z intensity r g b`, which laser scanners write, only x, y and z are used.
-/// `#` and `//` begin a comment. A single number before the points is their count.
+/// Of `x y z intensity`, `x y z r g b` and `x y z intensity r g b`, which laser scanners write, only x, y and z are
+/// used. `#` and `//` begin a comment. A single number before the points is their count.
 pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
     let mut rows: Vec<f32> = Vec::new();
     let mut width = 0;

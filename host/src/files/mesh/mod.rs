@@ -18,8 +18,8 @@ use raw::RawMesh;
 pub struct MeshFile {
     /// Vertices in the frame and unit of the file. Each is finite, distinct from the others, and used by a triangle.
     pub vertices: Vec<[f32; 3]>,
-    /// Vertex indices of each triangle, in the winding order of the file, which by convention is counter-clockwise seen from
-    /// outside. Every index is in range and no triangle repeats one. A triangle may have no area.
+    /// Vertex indices of each triangle, in the winding order of the file, which by convention is counter-clockwise seen
+    /// from outside. Every index is in range and no triangle repeats one. A triangle may have no area.
     pub triangles: Vec<[u32; 3]>,
     /// What the reader changed or ignored, as sentences for the user.
     pub notes: Vec<String>,

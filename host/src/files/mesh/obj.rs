@@ -1,8 +1,8 @@
 //! Wavefront OBJ: vertices and faces.
 //!
-//! The format is parsed here, because the existing crates are unsuitable. tobj 4 reads a polyline (`l 1 2 3`) as a triangle,
-//! drops vertices without faces, renumbers the rest for every group and names no line in its errors. obj 0.10 loses the faces
-//! before an empty `g`, panics at some non-ASCII group names and rejects `vt` with one number.
+//! The format is parsed here, because the existing crates are unsuitable. tobj 4 reads a polyline (`l 1 2 3`) as a
+//! triangle, drops vertices without faces, renumbers the rest for every group and names no line in its errors. obj 0.10
+//! loses the faces before an empty `g`, panics at some non-ASCII group names and rejects `vt` with one number.
 
 use super::super::source::Source;
 use super::super::text::{before_comment, lines, number, short, three};
@@ -53,7 +53,8 @@ fn statement(mesh: &mut RawMesh, line: &str, line_number: usize) -> Result<(), S
     Ok(())
 }
 
-/// The vertex index of `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 0. A negative index counts back from the last vertex.
+/// The vertex index of `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 0. A negative index counts back from the last
+/// vertex.
 fn corner(word: &str, vertices: usize) -> Result<i64, String> {
     let vertex = word.split('/').next().unwrap_or_default();
     match vertex.parse::<i64>() {

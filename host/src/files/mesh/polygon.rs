@@ -53,7 +53,8 @@ fn push(triangles: &mut Vec<[u32; 3]>, [a, b, c]: [u32; 3]) {
     }
 }
 
-/// Cuts along the diagonal whose two triangles have the same winding order. In a concave quadrilateral it is the inner one.
+/// Cuts along the diagonal whose two triangles have the same winding order. In a concave quadrilateral it is the inner
+/// one.
 fn quad(p: &[[f64; 3]; 4]) -> [[usize; 3]; 2] {
     let candidates = [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]];
     let [first, second] = candidates.map(|[s, t]| {

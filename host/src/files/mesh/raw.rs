@@ -171,8 +171,8 @@ fn place(face: usize, line: usize) -> Place {
     if line > 0 { Place::Line(line) } else { Place::Face(face) }
 }
 
-/// Whether the triangle has an area. Differences and products of f32 values are so accurate in f64 that only a true zero is
-/// zero.
+/// Whether the triangle has an area. Differences and products of f32 values are so accurate in f64 that only a true
+/// zero is zero.
 fn has_area(vertices: &[[f32; 3]], triangle: &[u32; 3]) -> bool {
     let [a, b, c] = triangle.map(|i| vertices[i as usize].map(f64::from));
     let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));

@@ -1,7 +1,8 @@
 //! STL, text and binary.
 //!
-//! The format is parsed here: stl_io 0.11 reads a binary file whose header begins with "solid " as text, reads only the first
-//! of several solids, and rejects the `facet normal nan nan nan` that exporters write for thin facets. Normals are ignored.
+//! The format is parsed here: stl_io 0.11 reads a binary file whose header begins with "solid " as text, reads only the
+//! first of several solids, and rejects the `facet normal nan nan nan` that exporters write for thin facets. Normals
+//! are ignored.
 
 use super::super::source::Source;
 use super::super::text::{lines, short, three};

@@ -1,7 +1,8 @@
 //! glTF 2.0, as one file (GLB) or as JSON with its buffers beside it or inside it.
 //!
-//! The gltf crate reads and validates the JSON. Buffers are read in `buffers`, because the crate's import would also load and
-//! decode every image. Their numbers are read in `accessor`, because the crate's iterators trust offsets, counts and types.
+//! The gltf crate reads and validates the JSON. Buffers are read in `buffers`, because the crate's import would also
+//! load and decode every image. Their numbers are read in `accessor`, because the crate's iterators trust offsets,
+//! counts and types.
 
 mod accessor;
 mod buffers;
@@ -15,7 +16,8 @@ use super::super::source::Source;
 use super::super::{FileError, Place};
 use super::RawMesh;
 
-/// Largest number of vertices and face corners. Many nodes can use one mesh, so a small file could require any amount of memory.
+/// Largest number of vertices and face corners. Many nodes can use one mesh, so a small file could require any amount
+/// of memory.
 const MOST: usize = 100_000_000;
 
 pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
