@@ -30,7 +30,7 @@ test: setup
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
-	cargo run --release -p hangpose --example samples -- --check
+	cargo run --release -p host-tests --example samples -- --check
 	cargo run -p hangpose-ffi --example header -- --check
 	scripts/bare-metal.sh
 	scripts/link.sh
@@ -40,13 +40,13 @@ bench: setup
 
 tables: setup
 	cargo run --release -p host-tests --bin tables -- $(if $(MESHES),--meshes $(MESHES) --real-pairs 53)
-	@printf '\n## What each part brings\n\n110 made pairs of seed 2 and 73 that cannot hang, Bullet alone:\n\n' >> docs/RESULTS.md
+	@printf '\n## Contribution of each part\n\n110 generated pairs of seed 2 and 73 that cannot hang, judged by Bullet alone:\n\n' >> docs/RESULTS.md
 	cargo run --release -p host-tests --bin tables -- --summary --engine bullet --pairs 110 --seed 2 \
 		--profile default,sites-only,sites-settled,contacts-only,eight-attempts --json build/parts.jsonl >> docs/RESULTS.md
-	@printf '## Caps\n\nThe weakest kind, of which 600 pairs have too few to tell; of 3300 of seed 202, Bullet alone:\n\n' >> docs/RESULTS.md
+	@printf '## Caps\n\nThe weakest kind, too rare among 600 pairs; from 3300 pairs of seed 202, judged by Bullet alone:\n\n' >> docs/RESULTS.md
 	cargo run --release -p host-tests --bin tables -- --summary --engine bullet --profile default --only cap \
 		--pairs 3300 --seed 202 --json build/caps.jsonl >> docs/RESULTS.md
-	@printf '## The core against Bullet\n\nRandom candidate poses, as `cargo run --release -p host-tests --bin settle` lets them go:\n\n```text\n' >> docs/RESULTS.md
+	@printf '## The core against Bullet\n\nRandom candidate poses, released by `cargo run --release -p host-tests --bin settle`:\n\n```text\n' >> docs/RESULTS.md
 	cargo run --release -p host-tests --bin settle >> docs/RESULTS.md
 	@printf '```\n' >> docs/RESULTS.md
 
@@ -89,8 +89,8 @@ deb:
 	cmake --build build/deb
 	cd build/deb && cpack -B $(CURDIR)/build
 
-samples:
-	cargo run --release -p hangpose --example samples
+samples: setup
+	cargo run --release -p host-tests --example samples
 
 clean:
 	cargo clean

@@ -1,6 +1,6 @@
-"""Fits the constants of docs/PROBABILITY.md to poses that were let go in Bullet.
+"""Fits the constants of docs/PROBABILITY.md to the outcomes of poses in Bullet.
 
-Reads the rows of `tables --all --json`: make calibrate.
+Reads the rows that `tables --all --json` writes. `make calibrate` runs both.
 """
 
 import json
@@ -15,7 +15,7 @@ MOST_SINKING_MM = 10.0
 
 
 def poses(path):
-    """What the predictor said of each pose, whether it hangs, whether robustly, its probability, and its pair."""
+    """Yields for each pose: features, whether it hangs, whether it is robust, predicted probability, and pair."""
     with open(path) as file:
         rows = [json.loads(line) for line in file]
     for row in rows:
@@ -32,7 +32,7 @@ def poses(path):
 
 
 def fit(name, features, outcomes):
-    """A regression on what became of the poses. Hardly regularised, without scaling: it is the formula as it stands."""
+    """Fits a logistic regression, with weak regularisation and unscaled features as in the documented formula."""
     model = LogisticRegression(C=10.0, max_iter=1000).fit(features, outcomes)
     constants = [model.intercept_[0], *model.coef_[0]]
     print(f"{name}, {100 * outcomes.mean():.1f} % of {len(outcomes)}: " + ", ".join(f"{c:.2f}" for c in constants))
@@ -47,7 +47,7 @@ def main():
     for name, probability in [("as it is", said), ("fitted", fitted)]:
         print(f"Brier score, {name}: {np.mean((probability - hangs) ** 2):.4f}")
     for name, probability in [("as it is", said), ("fitted", fitted), ("fitted to robust", fitted_to_robust)]:
-        # Of equal ones the first, as the predictor gave them.
+        # Among equal probabilities the first pose, in the order of the predictor.
         best = [max(np.flatnonzero(pairs == pair), key=lambda k: probability[k]) for pair in np.unique(pairs)]
         shares = 100 * hangs[best].mean(), 100 * robust[best].mean()
         print(f"best of {len(best)} pairs, {name}: hang {shares[0]:.1f} %, robust {shares[1]:.1f} %")

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Holds hangpose against another implementation of the paper, written with Open3D and scikit-learn.
+"""Compares hangpose with another implementation of the paper, written with Open3D and scikit-learn.
 
-  peer.py --peer PEER.py time   OBJECT SUPPORTER            both on the same files in turn: time and memory
-  peer.py --peer PEER.py agree  --meshes DIR [OBJECT:SUPPORTER ...]   do the best poses of both agree?
+  peer.py --peer PEER.py time   OBJECT SUPPORTER            time and memory of both on the same files, in alternation
+  peer.py --peer PEER.py agree  --meshes DIR [OBJECT:SUPPORTER ...]   whether the best poses of both agree
 
-PEER.py offers `load(object, supporter, scale, supporter_mesh)` and `predict(mesh, points, normals)`, which
+PEER.py must define `load(object, supporter, scale, supporter_mesh)` and `predict(mesh, points, normals)`, which
 returns ranked poses (dicts with a 4x4 `pose`) and timings. DIR holds meshes with a `manifest.json` that gives
 `name`, `file`, `scale_to_m` and `up_axis`. Needs open3d, scikit-learn, scipy, trimesh and pillow.
 """
@@ -30,7 +30,7 @@ PAIRS = pathlib.Path(__file__).with_name("pairs.txt")
 
 
 def hangpose(command, *arguments):
-    """The poses and statistics of one prediction of the `paper` profile on one thread."""
+    """Returns poses and statistics of one prediction with the `paper` profile on one thread."""
     run = [command, "predict", "--profile", "paper", "--threads", "1", "--json", "-", *map(str, arguments)]
     result = subprocess.run(run, capture_output=True, text=True)
     if result.returncode not in (0, 3):
@@ -40,7 +40,7 @@ def hangpose(command, *arguments):
 
 
 def time(peer, command, args):
-    """Both in turn, so that a change of the machine's speed meets both."""
+    """Times both in alternation, so that a change of the machine's speed affects both."""
     mesh, points, normals = peer.load(args.object, args.supporter, 1.0, False)
     peer.predict(mesh, points, normals)
     theirs, ours = [], []
@@ -49,7 +49,7 @@ def time(peer, command, args):
         stats = hangpose(command, "--object", args.object, "--supporter", args.supporter)[1]
         ours.append(sum(stats["seconds"][stage] for stage in ("object", "supporter", "matching")))
     ratios = sorted(t / o for t, o in zip(theirs, ours))
-    print(f"object {args.object}, supporter {args.supporter}: {len(points)} points, {args.runs} runs in turn")
+    print(f"object {args.object}, supporter {args.supporter}: {len(points)} points, {args.runs} alternating runs")
     print(f"peer      {statistics.median(theirs):8.3f} s (median)")
     print(f"hangpose  {statistics.median(ours):8.3f} s (median), profile paper, one thread")
     print(f"ratio     {statistics.median(ratios):8.1f} (median), {ratios[0]:.1f} to {ratios[-1]:.1f}")
@@ -59,7 +59,7 @@ def time(peer, command, args):
 
 
 def load(entry, folder):
-    """A mesh from the manifest, in metres with z up."""
+    """Loads a mesh of the manifest, in metres with z up."""
     shape = trimesh.load(folder / entry["file"], force="mesh", process=False, skip_materials=True)
     mesh = o3d.geometry.TriangleMesh(o3d.utility.Vector3dVector(shape.vertices), o3d.utility.Vector3iVector(shape.faces))
     mesh.scale(entry["scale_to_m"], np.zeros(3))
@@ -71,22 +71,23 @@ def load(entry, folder):
 
 
 def apart(a, b, centre):
-    """How far apart two poses are: metres at the object's centre, and degrees."""
+    """Returns the distance of two poses at the object's centre in metres and their angle in degrees."""
     turn = np.degrees(np.arccos(np.clip((np.trace(a[:3, :3].T @ b[:3, :3]) - 1) / 2, -1, 1)))
     return np.linalg.norm((a - b)[:3, :3] @ centre + (a - b)[:3, 3]), turn
 
 
 def do_agree(some, others, centre):
+    """Returns whether any of the best poses of one run is near any of the best poses of another."""
     gaps = [apart(a, b, centre) for a, b in itertools.product(some[:TOP], others[:TOP])]
     return any(metres <= NEAR_M and degrees <= NEAR_DEG for metres, degrees in gaps)
 
 
 def agree(peer, command, args):
-    """For each pair, how often one of the best five of one run is near one of the best five of another."""
+    """Prints for each pair how often one of the best five poses of one run is near one of the best five of another."""
     folder = pathlib.Path(args.meshes)
     manifest = {entry["name"]: entry for entry in json.loads((folder / "manifest.json").read_text())}
     print(f"near: within {NEAR_M * 1000:.0f} mm at the object's centre and {NEAR_DEG:.0f} degrees; "
-          f"{args.runs} runs each with other samples")
+          f"{args.runs} runs each with different samples")
     print("pair                                                    poses  hangpose-peer  peer-peer  hangpose-hangpose")
     agreed = pairs = 0
     for pair in args.pairs:
@@ -109,7 +110,7 @@ def agree(peer, command, args):
         pairs += has_poses
         agreed += has_poses and cross >= 0.5
         print(f"{pair:55} {len(theirs[0]):5} {cross:14.0%} {spread[0]:10.0%} {spread[1]:18.0%}", flush=True)
-    print(f"{agreed} of {pairs} pairs where the peer has poses agree in at least half of the runs")
+    print(f"{agreed} of the {pairs} pairs with poses of the peer agree in at least half of the runs")
 
 
 def main():

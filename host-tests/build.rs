@@ -1,9 +1,10 @@
-//! Compiles the shims over the two physics engines. They are optimised in every profile: judging is all waiting for them.
+//! Compiles the shims over the two physics engines. They are optimised in every profile, since they dominate the run
+//! time.
 
 fn main() {
     let mut missing = Vec::new();
     for (library, minimum, package) in [("bullet", "3.0", "libbullet-dev"), ("ode", "0.16", "libode-dev")] {
-        // The libraries are linked after the shims that need them: further down.
+        // `compile` links the libraries, after the shims that need them.
         match pkg_config::Config::new().atleast_version(minimum).cargo_metadata(false).probe(library) {
             Ok(found) => compile(library, &found),
             Err(error) => missing.push((package, error)),
@@ -30,10 +31,10 @@ fn compile(library: &str, found: &pkg_config::Library) {
     let mut build = cc::Build::new();
     build.cpp(true).std("c++17").opt_level(2).warnings(true).file(&source);
     for path in &found.include_paths {
-        // As system headers, after the compiler's own: their warnings are none of ours.
+        // As system headers, after those of the compiler, which suppresses their warnings.
         build.flag("-idirafter").flag(path);
     }
-    // Such as the precision with which ODE was built.
+    // For example the precision of ODE's build.
     for (name, value) in &found.defines {
         build.define(name, value.as_deref());
     }

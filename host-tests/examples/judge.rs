@@ -1,4 +1,4 @@
-//! Shows what the judges make of a mug on a hook, and how long they take for it: a median of judgements in milliseconds.
+//! Prints the verdicts of both judges on hand-made scenes and their median time per judgement in milliseconds.
 
 #[allow(dead_code)]
 #[path = "../tests/common/mod.rs"]

@@ -1,4 +1,4 @@
-//! Pictures of a pose at release and at rest, side by side, so that a person sees what a verdict means.
+//! Pictures of a pose at release and at rest, side by side.
 
 use crate::solid::Solid;
 use hangpose::geometry::Pose;
@@ -10,17 +10,17 @@ use parry3d::query::{Ray, RayCast};
 use parry3d::shape::TriMesh;
 use std::path::Path;
 
-/// Pixels along the side of each of the two pictures.
+/// Side length of each of the two pictures, pixels.
 const SIDE: u32 = 320;
-/// Where the eye is, seen from the supporter: in front of the wall, to the side and above.
+/// Direction from the supporter to the camera: in front of the wall, to the side and above.
 const EYE: [f32; 3] = [0.75, -0.55, 0.37];
-/// How far away the eye is, metres: farther than anything reaches.
+/// Distance of the camera, m; larger than any scene.
 const FAR: f32 = 10.0;
 const BACKGROUND: Rgb<u8> = Rgb([255, 255, 255]);
 const OBJECT: [f32; 3] = [0.85, 0.45, 0.20];
 const SUPPORTER: [f32; 3] = [0.45, 0.50, 0.60];
 
-/// Writes a PNG with the object at `release` on the left and at `rest` on the right, both seen from the same place.
+/// Writes a PNG with the object at `release` on the left and at `rest` on the right, from the same viewpoint.
 pub fn write(
     path: &Path,
     object: &Solid,
@@ -42,7 +42,7 @@ fn mesh_of(solid: &Solid) -> TriMesh {
     TriMesh::new(vertices, solid.triangles.clone()).expect("a shape has triangles")
 }
 
-/// Draws what one sees of `seen` from far away into the square that begins at `column`.
+/// Draws an orthographic view of the box `seen` into the square that begins at `column`.
 fn draw(
     picture: &mut RgbImage,
     column: u32,

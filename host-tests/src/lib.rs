@@ -1,4 +1,5 @@
-//! Judges predicted poses: shapes of many kinds, dropped in two physics engines.
+//! Evaluates predicted poses: generates objects and supporters of many kinds and simulates the release in two physics
+//! engines.
 
 pub mod gallery;
 pub mod judge;
@@ -6,4 +7,4 @@ pub mod shapes;
 mod shell;
 pub mod solid;
 pub mod tables;
-mod winding;
+pub mod winding;

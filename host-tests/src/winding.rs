@@ -1,32 +1,34 @@
-//! How often a surface winds around a point.
+//! Generalised winding numbers.
 
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-/// Cells along the longest side of a surface, in which its triangles are summed up.
+/// Number of grid cells along the longest side of the bounding box. The triangles of a cell form a cluster.
 const CELLS: f64 = 20.0;
-/// From how many times their reach on triangles may be taken together (Barill et al. 2018).
+/// Distance in multiples of a cluster's radius from which the cluster is approximated by one dipole (Barill et al.
+/// 2018).
 const FAR: f64 = 3.0;
 
-/// A surface that is asked for its generalised winding number (Jacobson et al. 2013): 1 inside a closed surface, 0
-/// outside, in between near the openings of another.
-pub(crate) struct Winding {
+/// A surface with its generalised winding number (Jacobson et al. 2013): 1 inside a closed surface, 0 outside, and in
+/// between near the openings of an open surface.
+pub struct Winding {
     clusters: Vec<Cluster>,
 }
 
-/// Triangles that are close to each other, and what they look like from afar.
+/// Neighbouring triangles and their far-field approximation.
 struct Cluster {
     triangles: Vec<[Point3<f64>; 3]>,
     centre: Point3<f64>,
-    /// Where the farthest corner is from the centre.
+    /// Distance of the farthest corner from the centre.
     reach: f64,
-    /// The sum of their normals, each as long as its area.
+    /// Sum of the area-weighted normals.
     area_normal: Vector3<f64>,
 }
 
 impl Winding {
-    pub(crate) fn new(triangles: impl Iterator<Item = [Point3<f64>; 3]>) -> Self {
+    /// Groups the triangles into clusters.
+    pub fn new(triangles: impl Iterator<Item = [Point3<f64>; 3]>) -> Self {
         let triangles: Vec<_> = triangles.collect();
         let corners = || triangles.as_flattened().iter().copied();
         let low = corners().reduce(|a, b| a.inf(&b)).unwrap_or_default();
@@ -40,7 +42,8 @@ impl Winding {
         Self { clusters: cells.into_values().map(Cluster::new).collect() }
     }
 
-    pub(crate) fn number(&self, point: &Point3<f64>) -> f64 {
+    /// The winding number of the surface around a point.
+    pub fn number(&self, point: &Point3<f64>) -> f64 {
         self.clusters.iter().map(|cluster| cluster.angle(point)).sum::<f64>() / (4.0 * PI)
     }
 }
@@ -58,7 +61,7 @@ impl Cluster {
         }
     }
 
-    /// The solid angle under which the point sees the triangles.
+    /// Solid angle of the triangles as seen from the point.
     fn angle(&self, point: &Point3<f64>) -> f64 {
         let away = self.centre - point;
         let distance = away.norm();
@@ -69,7 +72,7 @@ impl Cluster {
     }
 }
 
-/// Van Oosterom and Strackee 1983.
+/// Solid angle of a triangle (Van Oosterom and Strackee 1983).
 fn solid_angle(triangle: &[Point3<f64>; 3], point: &Point3<f64>) -> f64 {
     let [a, b, c] = triangle.map(|corner| corner - point);
     let [la, lb, lc] = [a.norm(), b.norm(), c.norm()];

@@ -1,9 +1,11 @@
-//! The judges are judged: what plainly hangs holds in both engines, what plainly falls does not, and they obey physics.
+//! Tests of the judges: clear cases of hanging and falling have the same verdicts in both engines, and both obey
+//! mechanics.
 
 mod common;
 
 use common::*;
 use host_tests::judge::{Bullet, GRAVITY, Judge, Ode, Scene, Verdict};
+use host_tests::shapes::Random;
 use host_tests::solid::Solid;
 use nalgebra::{Isometry3, Vector3};
 use std::sync::OnceLock;
@@ -68,11 +70,11 @@ fn what_does_not_hang_falls() {
 
 #[test]
 fn what_is_pushed_through_is_not_clear() {
-    // The hook's rising end runs through the mug's wall, and the peg through a solid box.
+    // The rising end of the hook runs through the wall of the mug, and the peg through a solid box.
     let cases = [
         ("mug through hook", mug(), hook(), pose([0.02, 0.1, -0.01], Vector3::y(), -90.0)),
         ("box through peg", cuboid([0.02, 0.02, 0.02]), peg(), at(0.0, 0.05, 0.0075)),
-        // All of a short bar is in the box, and no surface meets another.
+        // The whole bar is in the box, and no surfaces intersect.
         (
             "box around bar",
             cuboid([0.05, 0.05, 0.05]),
@@ -84,7 +86,7 @@ fn what_is_pushed_through_is_not_clear() {
     for (name, object, supporter, release) in &cases {
         for (judge, verdict) in JUDGES.iter().zip(verdicts(object, supporter, release)) {
             assert!(!verdict.clear && !verdict.success(), "{name}, {}: {verdict:?}", judge.name());
-            // Run through, it stays there whichever way gravity goes.
+            // A mug that the hook runs through stays under gravity in any direction.
             let stuck = verdict.holds && !verdict.honest;
             assert!(stuck || *name != "mug through hook", "{}: {verdict:?}", judge.name());
         }
@@ -93,7 +95,8 @@ fn what_is_pushed_through_is_not_clear() {
 
 #[test]
 fn what_is_wedged_is_not_honest() {
-    // A tight ring: its hole is half a millimetre narrower than the peg all around. Clear, and it stays, and it stays.
+    // The hole of the ring is 0.5 mm smaller in radius than the peg. The pose is clear and holds, also under reversed
+    // gravity.
     let tight = ring(PEG + 0.003 - 0.0005, 0.003);
     let level = capsule([0.0; 3], [0.0, 0.1, 0.0], PEG);
     for (judge, verdict) in JUDGES.iter().zip(verdicts(&tight, &level, &at(0.0, 0.05, 0.0))) {
@@ -104,7 +107,8 @@ fn what_is_wedged_is_not_honest() {
 
 #[test]
 fn a_little_play_is_enough_to_come_free() {
-    // The ring flies for as long as it takes to fall 2.5 mm, of which only the last two milliseconds are beyond the 2 mm asked for.
+    // The ring is free while it moves by 2.5 mm. Only in the last two milliseconds has it moved by more than the
+    // required 2 mm.
     let loose = ring(PEG + 0.003 + 0.00125, 0.003);
     let level = capsule([0.0; 3], [0.0, 0.1, 0.0], PEG);
     for (judge, verdict) in JUDGES.iter().zip(verdicts(&loose, &level, &at(0.0, 0.05, 0.0))) {
@@ -178,7 +182,8 @@ fn falling_gains_what_gravity_gives() {
 
 #[test]
 fn a_pendulum_keeps_time() {
-    // Two boards that lean together hang from a thin bar in the notch between them. Without friction, the bar is a hinge.
+    // Two boards that lean against each other hang on a thin bar in the notch between them. Without friction the bar is
+    // a hinge.
     const BAR: f32 = 0.002;
     let mut object = Solid::default();
     for side in [-1.0, 1.0] {
@@ -221,40 +226,41 @@ fn a_pendulum_keeps_time() {
     assert!(worst < 0.02, "{worst}");
 }
 
-/// What became of one pose of many, in Bullet and in ODE.
+/// Verdicts on one random pose in Bullet and in ODE.
 struct Trial {
     name: &'static str,
     release: Isometry3<f32>,
     verdicts: [Verdict; 2],
+    /// Verdicts with half the time step.
     finer: [Verdict; 2],
-    /// Nudged by half a millimetre and one degree, once this way and once that.
+    /// Success after displacements by 0.5 mm and 1 degree in two opposite directions.
     nudged: [[bool; 2]; 2],
 }
 
 impl Trial {
+    /// Whether a small displacement changes a verdict.
     fn marginal(&self) -> bool {
         (0..2).any(|i| self.nudged[i].iter().any(|&nudged| nudged != self.verdicts[i].success()))
     }
 }
 
-/// The same numbers every time (SplitMix64).
-struct Random(u64);
+/// Random numbers and poses in single precision.
+struct Draw(Random);
 
-impl Random {
-    fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 40) as f32 / (1 << 24) as f32
+impl Draw {
+    /// Uniform in [0, 1).
+    fn unit(&mut self) -> f32 {
+        (self.0.next_u64() >> 40) as f32 / (1 << 24) as f32
     }
 
+    /// Uniform in the cube [-1, 1)³.
     fn vector(&mut self) -> Vector3<f32> {
-        Vector3::from_fn(|_, _| 2.0 * self.next() - 1.0)
+        Vector3::from_fn(|_, _| 2.0 * self.unit() - 1.0)
     }
 
+    /// A rotation by at most `degrees`.
     fn turn(&mut self, degrees: f32) -> Isometry3<f32> {
-        let (axis, share) = (self.vector(), self.next());
+        let (axis, share) = (self.vector(), self.unit());
         pose([0.0; 3], axis, degrees * share)
     }
 }
@@ -299,7 +305,7 @@ fn trial(
     supporter: &Solid,
     hanging: &Isometry3<f32>,
 ) -> Trial {
-    let mut random = Random(number as u64);
+    let mut random = Draw(Random::new(number as u64));
     let mut scene = Scene::new(object, supporter);
     scene.tilt = false;
     let centre = Vector3::from(scene.centre_of_mass());
@@ -307,7 +313,7 @@ fn trial(
         let middle = (pose * nalgebra::Point3::from(centre)).coords;
         nalgebra::Translation3::from(middle + shift) * turn * nalgebra::Translation3::from(-middle) * pose
     };
-    // Poses deep in the supporter say nothing about hanging: draw again.
+    // Deeply penetrating poses are rejected, since they say nothing about hanging.
     let release = loop {
         let release = about(random.vector() * 0.01, random.turn(40.0), hanging);
         let mut world = JUDGES[0].world(&scene);
@@ -372,7 +378,7 @@ fn the_same_again_is_the_same() {
         let threads = [scope.spawn(judged), scope.spawn(judged)];
         threads.map(|thread| thread.join().unwrap())
     });
-    // To the last bit.
+    // All bits are equal.
     assert_eq!([first, first], others);
 }
 
@@ -382,7 +388,7 @@ fn the_shapes_are_what_they_seem() {
     let object = ring(0.03, 0.003);
     let peg = peg();
     let Scene { mass, .. } = Scene::new(&object, &peg);
-    // A torus, but for what its corners lack.
+    // The moments of a torus, up to the error of the polygon.
     let across = mass.mass * (radius * radius + 0.75 * thickness * thickness);
     let along = mass.mass * (0.5 * radius * radius + 0.625 * thickness * thickness);
     assert!(mass.frame.translation.vector.norm() < 1e-6);
@@ -392,7 +398,7 @@ fn the_shapes_are_what_they_seem() {
         assert!((moment / expected - 1.0).abs() < 0.02, "{moments:?}");
     }
     for solid in [object, peg, hook(), hulls(), mug(), hanger(), ball(0.02), cuboid([0.01; 3])] {
-        // Closed: every edge is gone along once each way.
+        // Closed: triangles use every edge once in each direction.
         let edges = solid.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
         let mut edges: Vec<_> = edges.collect();
         let mut back: Vec<_> = edges.iter().map(|&(a, b)| (b, a)).collect();

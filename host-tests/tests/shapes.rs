@@ -1,4 +1,4 @@
-//! Every shape is closed, is what its parts say, and hangs where it says.
+//! Every shape is closed and agrees with its convex parts, and its openings have the stated widths.
 
 mod distances;
 
@@ -25,7 +25,7 @@ fn corners(solid: &Solid) -> Vec<[[f64; 3]; 3]> {
     solid.triangles.iter().map(|t| t.map(|v| double(solid.vertices[v as usize]))).collect()
 }
 
-/// Points on the surface, one in each triangle that is picked.
+/// Random points on the surface, each in a random triangle.
 fn surface_points(solid: &Solid, count: usize) -> Vec<[f64; 3]> {
     let (triangles, mut random) = (corners(solid), Random::new(1));
     (0..count)
@@ -80,7 +80,7 @@ fn parts_agree_with_the_mesh() {
             for p in surface_points(&solid, 150) {
                 let nearest =
                     hulls.iter().map(|h| distance_to_part(h, p).abs()).fold(f64::INFINITY, f64::min);
-                assert!(nearest < 5e-4, "{name}: the surface at {p:?} is {nearest} m from every part's");
+                assert!(nearest < 5e-4, "{name}: the surface at {p:?} is {nearest} m from the closest part");
             }
             let (triangles, mut random) = (corners(&solid), Random::new(2));
             for _ in 0..40 {
@@ -100,7 +100,7 @@ fn parts_agree_with_the_mesh() {
     }
 }
 
-/// A corner of the part and a point within, or two of its points.
+/// Points in and on the part.
 fn points_of(part: &Part, random: &mut Random) -> Vec<[f64; 3]> {
     match part {
         Part::Hull(points) => {
@@ -166,7 +166,7 @@ fn openings_are_as_wide_as_they_say() {
                 let clear = f64::from(o.clear_radius);
                 let name = format!("{} {seed}: {o:?}, but {clearance}", kind.name);
                 assert!(clear > 0.0015 && clearance > clear - 5e-4, "{name}");
-                // A hook may be as wide as its mouth only.
+                // The clear radius of a hook is limited by its mouth, too.
                 assert!(o.kind == OpeningKind::Hook || clearance < clear + 1e-3, "{name}");
             }
         }

@@ -1,5 +1,5 @@
-//! The shells that stand for real meshes are judged: they have the holes of the mesh, and what hangs by them is what hangs
-//! by the exact parts.
+//! Tests of the shells that represent arbitrary meshes: they preserve the holes of the mesh, and verdicts on shells
+//! agree with those on exact parts.
 
 mod common;
 
@@ -10,7 +10,7 @@ use nalgebra::{Isometry3, Vector3};
 use parry3d::query::PointQuery;
 use parry3d::shape::TriMesh;
 
-/// How far a shell may be outside of its mesh, metres.
+/// Largest distance of a shell outside its mesh, m.
 const OUTSIDE: f32 = 0.001;
 
 fn shell(solid: &Solid) -> Solid {
@@ -27,7 +27,7 @@ fn hanging_mug() -> Isometry3<f32> {
 }
 
 #[test]
-fn shells_are_judged_as_what_they_are_the_shells_of() {
+fn verdicts_on_shells_are_those_on_exact_parts() {
     let cases = [
         ("ring on peg", ring(0.03, 0.003), peg(), at(0.0, 0.05, -0.0145), true),
         ("ring on hook", ring(0.03, 0.003), hook(), at(0.0, 0.07, -0.0225), true),
@@ -77,10 +77,10 @@ fn shells_are_where_the_mesh_is() {
         let points = solid.vertices.iter().map(|&vertex| vertex.into()).collect();
         let surface = TriMesh::new(points, solid.triangles.clone()).unwrap();
         for part in &shell.parts {
-            let Part::Hull(corners) = part else { panic!("{name}: {part:?} is no prism") };
+            let Part::Hull(corners) = part else { panic!("{name}: {part:?} is not a prism") };
             for &corner in corners {
                 let off = surface.distance_to_local_point(corner.into(), true);
-                // Inside, they may be as far from the surface as the shell is thick.
+                // Inside, the distance may be as large as the thickness of the shell.
                 assert!(off < 0.002 + OUTSIDE, "{name}: {off} m from the mesh");
             }
             for corner in &corners[..3] {
@@ -102,7 +102,7 @@ fn inside_out_is_the_same() {
 
 #[test]
 fn an_open_mesh_is_a_sheet() {
-    // A box without its lid: its mass is lower than the middle, and its shell is as thin as paper.
+    // A box without a lid: its centre of mass is below its centre.
     let mut open = cuboid([0.02; 3]);
     open.triangles.retain(|triangle| triangle.iter().any(|&index| open.vertices[index as usize][2] < 0.0));
     assert!(!open.is_closed() && cuboid([0.02; 3]).is_closed());

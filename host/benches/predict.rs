@@ -1,4 +1,4 @@
-//! `cargo bench`: the time of each stage and the memory of one prediction, on the samples and one thread.
+//! `cargo bench`: time of each stage and memory of one prediction, for the samples on one thread.
 
 use hangpose::hanging::{HangingPose, Object, Supporter, predict, predict_bytes};
 use hangpose::memory::Limits;
@@ -10,7 +10,7 @@ const RUNS: usize = 15;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples");
-    println!("median of {RUNS} runs, milliseconds; memory is model and scratch, MiB");
+    println!("median of {RUNS} runs, milliseconds; memory is models and scratch, MiB");
     println!("object    supporter  profile    object  supporter  matching    total   memory");
     for (object, supporter) in
         [("mug", "mug_tree"), ("mug", "hook"), ("scissors", "mug_tree"), ("scissors", "hook")]

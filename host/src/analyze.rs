@@ -1,4 +1,4 @@
-//! The core's analyses in memory that grows as needed.
+//! The core's functions with memory from the heap.
 
 use crate::files::{CloudFile, MeshFile};
 use crate::geometry::{Cloud, CloudError, Mesh, MeshError};
@@ -9,7 +9,8 @@ use crate::memory::Limits;
 use crate::perception::sampling;
 use crate::{Monitor, Params};
 
-/// The largest inputs that the command takes, so that a wrong file does not fill the computer: about 700 MB.
+/// Largest inputs that the command accepts, about 700 MB of memory. They keep a wrong file from exhausting the
+/// computer.
 pub const LIMITS: Limits = Limits {
     vertices: 4_000_000,
     triangles: 2_000_000,
@@ -18,35 +19,35 @@ pub const LIMITS: Limits = Limits {
     points: 1_000_000,
 };
 
-/// An input is larger than a limit.
+/// An input exceeds a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{count} {what} are {} more than the limit of {limit}; {remedy}", count - limit)]
 pub struct TooLarge {
-    /// What there is too much of.
+    /// Name of the items that exceed the limit.
     pub what: &'static str,
-    /// How many there are.
+    /// Number of items in the input.
     pub count: usize,
-    /// How many there may be.
+    /// Largest permitted number of items.
     pub limit: usize,
-    /// What to do about it.
+    /// How to reduce the input.
     pub remedy: &'static str,
 }
 
 impl TooLarge {
-    /// Holds a mesh against [`LIMITS`].
+    /// Checks a mesh against [`LIMITS`].
     pub fn check_mesh(mesh: &MeshFile) -> Result<(), Self> {
         let remedy = "decimate the mesh";
         Self::check("vertices", mesh.vertices.len(), LIMITS.vertices, remedy)?;
         Self::check("triangles", mesh.triangles.len(), LIMITS.triangles, remedy)
     }
 
-    /// Holds a cloud against [`LIMITS`].
+    /// Checks a cloud against [`LIMITS`].
     pub fn check_cloud(cloud: &CloudFile) -> Result<(), Self> {
         Self::check(
             "points",
             cloud.points.len(),
             LIMITS.points,
-            "thin the cloud out, for example to one point a millimetre",
+            "downsample the cloud, for example to one point per millimetre",
         )
     }
 
@@ -69,7 +70,7 @@ impl CloudFile {
     }
 }
 
-/// [`Object::analyze`] in `memory`, which is resized to what the mesh takes.
+/// Calls [`Object::analyze`] after resizing `memory` to the required size.
 pub fn analyze_object<'m>(
     mesh: &Mesh,
     params: &Params,
@@ -81,7 +82,7 @@ pub fn analyze_object<'m>(
     Object::analyze(mesh, params, memory, monitor)
 }
 
-/// [`Supporter::analyze`] in `memory`, which is resized to what the cloud takes.
+/// Calls [`Supporter::analyze`] after resizing `memory` to the required size.
 pub fn analyze_supporter<'m>(
     cloud: &Cloud,
     params: &Params,
@@ -92,7 +93,7 @@ pub fn analyze_supporter<'m>(
     Supporter::analyze(cloud, params, memory, monitor)
 }
 
-/// [`predict`] with working memory of its own.
+/// Calls [`predict`] with scratch memory from the heap.
 pub fn predict_poses<'p>(
     object: &Object,
     supporter: &Supporter,
@@ -103,11 +104,11 @@ pub fn predict_poses<'p>(
     predict(object, supporter, params, poses, &mut vec![0; predict_bytes(&supporter.limits())], monitor)
 }
 
-/// A cloud of `count` points and normals from a supporter that is given as a mesh.
+/// Samples `count` points and normals on the mesh of a supporter.
 pub fn sample_supporter(mesh: &Mesh, count: usize, seed: u64) -> CloudFile {
     let (mut points, mut normals) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
     let mut memory = vec![0; sampling::sample_bytes(count)];
     sampling::sample(mesh, seed, &mut points, &mut normals, &mut memory)
-        .expect("sample_bytes says how much memory it takes");
+        .expect("the memory has the size that sample_bytes returns");
     CloudFile { points, normals: Some(normals), notes: Vec::new() }
 }

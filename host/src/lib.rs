@@ -1,8 +1,7 @@
-//! Where and how to hang an object that a robot has never seen on a supporter that it has never seen, on a
-//! computer with files and a heap.
+//! Predicts hanging poses of unknown objects on unknown supporters, on a computer with files and a heap.
 //!
-//! Everything of the core, [`hangpose_core`], is here as well; this crate adds [`files`] and the [`memory`]
-//! that the core leaves to its caller. The command `hangpose` is made of it.
+//! This crate re-exports the core, [`hangpose_core`]. It adds readers of [`files`] and allocates the [`memory`] that
+//! the core takes from its caller. The command `hangpose` is built on it.
 //!
 //! ```no_run
 //! use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files, hanging, predict_poses};
@@ -26,7 +25,7 @@ pub mod parry;
 pub use analyze::{LIMITS, TooLarge, analyze_object, analyze_supporter, predict_poses, sample_supporter};
 pub use hangpose_core::*;
 
-/// The README's Rust must compile.
+/// Compiles the Rust code of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 struct Readme;

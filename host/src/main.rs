@@ -5,7 +5,7 @@ mod cli;
 use clap::Parser;
 use std::process::ExitCode;
 
-/// Bad input, or an output that cannot be written.
+/// Exit status for bad input or an output that cannot be written.
 const FAILED: u8 = 1;
 
 fn main() -> ExitCode {

@@ -1,4 +1,4 @@
-//! To and from the types of parry3d 0.31, which rapier3d uses too.
+//! Conversions to and from the types of parry3d 0.31, which rapier3d uses too.
 //!
 //! Triangles need no conversion: `TriMesh::indices` is what [`Mesh::new`](hangpose_core::geometry::Mesh::new) takes.
 //!
@@ -25,14 +25,14 @@
 //! let ring = TriMesh::new(vertices, triangles)?;
 //! let peg = Capsule::new_y(0.04, 0.004);
 //!
-//! // What a camera would see of the peg.
+//! // A point cloud of the peg, as from a camera.
 //! let (vertices, triangles) = peg.to_trimesh(32, 8);
 //! let vertices = parry::coordinates(&vertices);
 //! let (mut points, mut normals) = (vec![[0.0; 3]; 2000], vec![[0.0; 3]; 2000]);
 //! let mut memory = vec![0; sampling::sample_bytes(points.len())];
 //! sampling::sample(&Mesh::new(&vertices, &triangles)?, 0, &mut points, &mut normals, &mut memory)?;
 //!
-//! // Where does the ring hang?
+//! // Predict where the ring hangs.
 //! let (params, monitor) = (Params::default(), Monitor::new());
 //! let vertices = parry::coordinates(ring.vertices());
 //! let (mut object_memory, mut supporter_memory) = (vec![], vec![]);
@@ -42,7 +42,7 @@
 //! let mut poses = [HangingPose::default(); 10];
 //! let prediction = predict_poses(&object, &supporter, &params, &mut poses, &monitor)?;
 //!
-//! // What parry says of the best pose: the peg is in the ring's hole, which has a radius of 27 mm.
+//! // Check the best pose with parry: the peg is in the ring's hole, which has a radius of 27 mm.
 //! let pose = parry::pose_to_parry(&prediction.poses[0].pose);
 //! let gap = query::distance(&pose, &ring, &math::Pose::IDENTITY, &peg)?.distance;
 //! assert!(gap < 0.027 && pose.translation.y.abs() < 0.04);
@@ -53,19 +53,19 @@ use hangpose_core::geometry::Pose;
 use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 use parry3d::math;
 
-/// Vertices, points or normals as the core takes them. They stay in the frame that they are in; lengths are metres.
+/// Converts vertices, points or normals for the core. The frame is unchanged; lengths are in metres.
 pub fn coordinates(vectors: &[math::Vector]) -> Vec<[f32; 3]> {
     vectors.iter().map(math::Vector::to_array).collect()
 }
 
-/// A pose for parry and rapier. A hanging pose maps object to supporter coordinates, so the supporter's pose in the
-/// world times this one is the object's.
+/// Converts a pose for parry and rapier. A hanging pose maps object to supporter coordinates, so the object's pose in
+/// the world is the supporter's pose in the world times this pose.
 pub fn pose_to_parry(pose: &Pose) -> math::Pose {
     let rotation = math::Rotation::from_array(pose.rotation.coords.into());
     math::Pose::from_parts(math::Vector::from_array(pose.translation.vector.into()), rotation)
 }
 
-/// A pose for the core. The rotation is brought to unit length, which it may have lost after many products.
+/// Converts a pose for the core. The rotation is renormalised, since many products may have changed its length.
 pub fn pose_from_parry(pose: &math::Pose) -> Pose {
     let rotation = Quaternion::from(nalgebra::Vector4::from(pose.rotation.to_array()));
     Pose::from_parts(
@@ -79,7 +79,7 @@ mod tests {
     use super::*;
     use hangpose_core::geometry::{Point, Vector};
 
-    /// Both libraries must move a point to the same place, there and back.
+    /// Both libraries transform a point alike, before and after conversion in both directions.
     #[test]
     fn a_pose_moves_points_to_the_same_place() {
         let ours = Pose::new(Vector::new(0.1, -0.2, 0.3), Vector::new(1.0, 2.0, -0.5));
@@ -87,7 +87,7 @@ mod tests {
         for point in [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.3, -0.7, 0.2]] {
             let expected = ours * Point::from(point);
             let moved = Point::from(parrys.transform_point(point.into()).to_array());
-            // A few roundings of numbers around 1.
+            // A few rounding errors of numbers around 1.
             assert!((moved - expected).norm() < 1e-6, "{moved} {expected}");
         }
         assert!((pose_from_parry(&parrys).to_homogeneous() - ours.to_homogeneous()).norm() < 1e-6);

@@ -1,13 +1,13 @@
-//! The same bytes on every machine: hashes of predictions on the samples.
+//! Hashes of predictions on the samples, which are the same on every machine.
 //!
-//! A hash that changes says that the method's numbers changed, not that they are wrong. After a change that is meant,
-//! take the new hash, which the failing test prints, and see that a Cortex-M7 gives it too.
+//! A changed hash means that the method's numbers changed, not that they are wrong. After an intended change, use the
+//! new hash, which the failing test prints, and check that a Cortex-M7 gives it too.
 
 use hangpose::hanging::{HangingPose, Rest};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files, predict_poses};
 use std::path::Path;
 
-/// FNV-1a over the bits of the ten best poses of a profile, and of what is said of them.
+/// FNV-1a hash over the bits of the ten best poses of a profile and of their fields.
 fn hash(object: &str, supporter: &str, params: &Params) -> String {
     let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples");
     let mesh = files::read_mesh(&samples.join(object)).unwrap();
@@ -26,7 +26,7 @@ fn hash(object: &str, supporter: &str, params: &Params) -> String {
     format!("{hash:08x}")
 }
 
-/// All that is said of a pose.
+/// All numbers of a pose.
 fn numbers(pose: &HangingPose) -> Vec<f32> {
     let of_pose = |pose: &hangpose::geometry::Pose| {
         [pose.translation.vector.as_slice(), pose.rotation.coords.as_slice()].concat()
@@ -55,7 +55,7 @@ fn the_paper_gives_the_same_bytes_everywhere() {
 #[test]
 fn the_default_gives_the_same_bytes_everywhere() {
     let pairs = [("mug.obj", "hook.ply", "f467fd93"), ("scissors.obj", "mug_tree.ply", "a1131fe8")];
-    // All of them, so that one run tells all the new ones.
+    // All hashes are compared at once, so that one run prints all new ones.
     let found =
         pairs.map(|(object, supporter, _)| (object, supporter, hash(object, supporter, &Params::default())));
     assert_eq!(found, pairs.map(|(object, supporter, expected)| (object, supporter, expected.to_string())));

@@ -1,12 +1,17 @@
-//! The hull that is never built, against one that is (parry3d) and against every plane through three points.
+//! The exit distance from a convex hull that is never built, compared with parry3d, which builds the hull, and with
+//! every plane through three points.
+
+mod random;
 
 use std::time::Instant;
 
 use hangpose_core::geometry::{Point, Vector, hull::exit_distance};
 use parry3d::query::{Ray, RayCast};
 use parry3d::shape::ConvexPolyhedron;
+use random::Random;
 
-/// Half-planes `normal . x <= offset`, found by trying every plane through three points; none where the set is flat.
+/// Half-spaces `normal . x <= offset` that contain all points, from every plane through three points; none for a flat
+/// set.
 struct Planes(Vec<([f64; 3], f64)>);
 
 fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -51,7 +56,7 @@ impl Planes {
         Self(planes)
     }
 
-    /// Where the ray leaves, with every plane moved out by `margin`.
+    /// Distance at which the ray leaves, with every plane moved outwards by `margin`.
     fn exit(&self, origin: Point, direction: Vector, margin: f64) -> f64 {
         let o = [origin.x as f64, origin.y as f64, origin.z as f64];
         let d = [direction.x as f64, direction.y as f64, direction.z as f64];
@@ -64,18 +69,13 @@ impl Planes {
     }
 }
 
-/// splitmix64
-struct Random(u64);
-
 impl Random {
+    /// Uniform in [0, 1).
     fn unit(&mut self) -> f32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 40) as f32 / (1u64 << 24) as f32
+        (self.next() >> 40) as f32 / (1u64 << 24) as f32
     }
 
+    /// Uniform in [-1, 1).
     fn signed(&mut self) -> f32 {
         2.0 * self.unit() - 1.0
     }
@@ -97,27 +97,27 @@ fn points(kind: usize, count: usize, random: &mut Random) -> Vec<Point> {
         .map(|i| match kind {
             0 => Point::new(random.signed(), random.signed(), random.signed()),
             1 => Point::from(random.direction()),
-            // Flat, to a hundredth and to a thousandth.
+            // Flat, with a thickness of a hundredth and of a thousandth.
             2 => Point::new(random.signed(), random.signed(), 0.01 * random.signed()),
             3 => Point::new(random.signed(), 0.001 * random.signed(), random.signed()),
             // Clusters.
             4 => Point::from(
                 [Vector::x(), -Vector::x(), Vector::y(), Vector::z()][i % 4] + 0.01 * random.direction(),
             ),
-            // A grid: most points in the planes of faces.
+            // A grid, with many points in the planes of the faces.
             5 => {
                 let n = (count as f32).cbrt().floor().max(2.0) as usize;
                 let c = |k: usize| (k % n) as f32 / (n - 1) as f32 - 0.5;
                 Point::new(c(i), c(i / n), c(i / n / n))
             }
-            // A long needle, in no direction of the axes.
+            // A long needle that is not aligned with an axis.
             _ => {
                 let along = Vector::new(0.6, 0.48, 0.64) * random.signed();
                 Point::from(along + 0.005 * random.direction())
             }
         })
         .collect();
-    // Every fourth set has half of its points twice.
+    // A quarter of the sets contain half of their points twice.
     if random.unit() < 0.25 {
         let half = count / 2;
         let copy = set[..half].to_vec();
@@ -126,7 +126,7 @@ fn points(kind: usize, count: usize, random: &mut Random) -> Vec<Point> {
     set
 }
 
-/// A point within: the mean of a few, or of two, or one of them.
+/// A point in the hull: the mean of one, two, four or eight points.
 fn within(set: &[Point], random: &mut Random) -> Point {
     let count = [8, 8, 4, 2, 1][(random.unit() * 5.0) as usize];
     let mut sum = Vector::zeros();
@@ -140,7 +140,7 @@ fn extent(set: &[Point], origin: Point) -> f32 {
     set.iter().map(|p| (p - origin).amax()).fold(0.0, f32::max)
 }
 
-/// The answer lies between the exit distances of the hull 1e-6 smaller and 2e-5 larger (of the extent).
+/// The exit distance lies between those of hulls that are 1e-6 of the extent smaller and 2e-5 larger.
 #[test]
 fn every_plane_through_three_points() {
     let mut random = Random(1);
@@ -152,7 +152,7 @@ fn every_plane_through_three_points() {
         let origin = within(&set, &mut random);
         let e = f64::from(extent(&set, origin));
         for toss in 0..4 {
-            // Now and then straight at one of the points.
+            // One ray in four points at one of the points.
             let mut direction = random.direction();
             if toss == 0 {
                 let target = set[(random.unit() * set.len() as f32) as usize] - origin;
@@ -174,9 +174,10 @@ fn every_plane_through_three_points() {
     }
 }
 
-/// parry3d casts the same ray from within its hull of the same points. Differences are taken across the plane that is
-/// hit, as a grazing ray magnifies what either rounds, and are of the extent. parry's GJK is an iteration of its own, and
-/// looser on thin and clustered sets; for the sets of 20 points every plane through three says how far each is off.
+/// parry3d casts the same ray from the inside of its hull of the same points. Differences are measured along the normal
+/// of the plane that is hit, because a grazing ray magnifies rounding errors, and are relative to the extent. parry's
+/// GJK iteration is less accurate on thin and clustered sets. On the sets of 20 points the planes through three points
+/// give the error of each.
 #[test]
 fn parry() {
     let mut random = Random(2);
@@ -191,7 +192,7 @@ fn parry() {
         };
         let planes = (set.len() <= 30).then(|| Planes::through(&set));
         for _ in 0..8 {
-            // Well within, as parry takes a ray from its surface either way.
+            // Well inside, because parry's result for a ray from the surface is ambiguous.
             let mut sum = Vector::zeros();
             for _ in 0..8 {
                 sum += set[(random.unit() * set.len() as f32) as usize].coords;
@@ -229,7 +230,7 @@ fn parry() {
             at(1.0)
         );
         assert!(all.len() > 1500);
-        println!("    off by {:.1e} here, {:.1e} there", ours[kind], theirs[kind]);
+        println!("    largest error: core {:.1e}, parry {:.1e}", ours[kind], theirs[kind]);
         let [half, most, worst] = match kind {
             2 | 3 | 6 => [5e-4, 5e-3, 2e-2],
             4 => [2e-5, 2e-4, 1e-3],
@@ -239,7 +240,7 @@ fn parry() {
     }
 }
 
-/// Not a judgement, a figure: run with `--nocapture`, optimised.
+/// Prints the time per ray; run it optimised with `--nocapture`.
 #[test]
 fn time() {
     let mut random = Random(3);

@@ -1,4 +1,4 @@
-//! Drops an object at a predicted pose in Bullet, says what becomes of it, and draws it.
+//! Simulates the release of an object at its predicted poses in Bullet, prints the verdicts, and draws a picture.
 
 use anyhow::{Context, Result, ensure};
 use clap::Parser;
@@ -20,10 +20,10 @@ struct Arguments {
     /// The supporter, in metres with z up.
     #[arg(long, value_name = "MESH")]
     supporter: PathBuf,
-    /// What `hangpose predict --json` wrote.
+    /// Output of `hangpose predict --json`.
     #[arg(long, value_name = "JSON")]
     poses: PathBuf,
-    /// Where the picture of the first pose that hangs goes, or of the best if none does.
+    /// File for the picture of the first pose that hangs, or of the best pose if none does.
     #[arg(long, value_name = "PNG")]
     picture: PathBuf,
 }
@@ -49,7 +49,7 @@ fn main() -> Result<()> {
     let at = || arguments.poses.display().to_string();
     let text = std::fs::read_to_string(&arguments.poses).with_context(at)?;
     let prediction: Prediction = serde_json::from_str(&text).with_context(at)?;
-    ensure!(!prediction.poses.is_empty(), "{}: there are no poses to drop", at());
+    ensure!(!prediction.poses.is_empty(), "{}: has no poses; predict a pair that hangs", at());
 
     let scene = Scene::new(&object, &supporter);
     let mut best = None;
@@ -58,11 +58,11 @@ fn main() -> Result<()> {
         let release = Pose::from_parts(Translation3::from(predicted.position), rotation);
         let verdict = Bullet::default().judge(&scene, &release);
         let words = match (verdict.clear, verdict.holds, verdict.honest, verdict.robust) {
-            (false, ..) => "runs through the supporter",
+            (false, ..) => "penetrates the supporter",
             (_, false, ..) => "falls",
             (_, _, false, _) => "is stuck in the supporter",
-            (.., false) => "hangs, but not when gravity is tilted",
-            (.., true) => "hangs, also when gravity is tilted",
+            (.., false) => "hangs, but not under tilted gravity",
+            (.., true) => "hangs, also under tilted gravity",
         };
         println!("pose {rank}: {words}; its centre of mass sinks by {:.1} mm", verdict.figures.sank * 1000.0);
         let poses = (release, verdict.figures.rest);

@@ -1,26 +1,26 @@
-//! Lets random candidate poses go in the core, in Bullet and in ODE and says how often they agree on what rests.
+//! Releases random candidate poses in the core, in Bullet and in ODE, and prints how often they agree on which come to
+//! rest.
 
 use anyhow::Result;
 use clap::Parser;
-use hangpose::geometry::Mesh;
 use hangpose::hanging::{HangingPose, let_go, predict_bytes};
 use hangpose::mechanics::Fate;
 use hangpose::memory::Limits;
-use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses, sample_supporter};
+use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses};
 use host_tests::judge::{Bullet, Judge, Ode, Scene};
 use host_tests::shapes::Random;
 use host_tests::tables::case::{Case, Fit, made};
-use host_tests::tables::report::wilson;
+use host_tests::tables::proportion::wilson;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[derive(Parser)]
 #[command(about)]
 struct Arguments {
-    /// Pairs that fit, made by the shape library.
+    /// Number of generated pairs that fit.
     #[arg(long, default_value_t = 250)]
     pairs: usize,
-    /// Poses of each.
+    /// Number of poses per pair.
     #[arg(long, default_value_t = 4)]
     poses: usize,
     /// Seed of the sizes.
@@ -28,16 +28,16 @@ struct Arguments {
     seed: u64,
 }
 
-/// What is said of a pose.
+/// Outcomes of a pose.
 #[derive(Clone, Copy)]
 struct Said {
-    /// Whether it rests in the core,
+    /// Whether the object comes to rest in the core.
     core: bool,
-    /// in Bullet
+    /// Whether the object holds in Bullet.
     bullet: bool,
-    /// and in ODE.
+    /// Whether the object holds in ODE.
     ode: bool,
-    /// Whether it hangs in Bullet, but still swings.
+    /// Whether the object touches the supporter at the end in Bullet, but still swings.
     swings: bool,
 }
 
@@ -64,20 +64,24 @@ fn main() -> Result<()> {
     println!("{} poses of {} pairs", said.len(), cases.len());
     let all = said.len();
     share("the core and Bullet agree", &|s| s.core == s.bullet, all);
-    println!("both rest {}, both fall {}", count(&|s| s.core && s.bullet), count(&|s| !s.core && !s.bullet));
     println!(
-        "rests in the core only {}, of these still swinging in Bullet {}",
+        "rest in both {}, fall in both {}",
+        count(&|s| s.core && s.bullet),
+        count(&|s| !s.core && !s.bullet)
+    );
+    println!(
+        "rest in the core only {}, of which {} still swing in Bullet",
         count(&|s| s.core && !s.bullet),
         count(&|s| s.core && s.swings)
     );
-    println!("rests in Bullet only {}", count(&|s| !s.core && s.bullet));
+    println!("rest in Bullet only {}", count(&|s| !s.core && s.bullet));
     let hangs = |s: &Said| s.core == (s.bullet || s.swings);
-    share("the core and Bullet agree on whether it hangs, swinging or not", &hangs, all);
+    share("the core and Bullet agree if swinging counts as rest", &hangs, all);
     share("ODE and Bullet agree", &|s| s.ode == s.bullet, all);
     share("the core and ODE agree", &|s| s.core == s.ode, all);
     let engines_agree = count(&|s| s.ode == s.bullet);
     share(
-        "the core agrees with both, where they agree",
+        "the core agrees with both engines where these agree",
         &|s| s.ode == s.bullet && s.core == s.ode,
         engines_agree,
     );
@@ -85,10 +89,9 @@ fn main() -> Result<()> {
 }
 
 fn judge(case: &Case, count: usize) -> Vec<Said> {
-    let cloud_of = Mesh::new(&case.supporter.vertices, &case.supporter.triangles).expect("shapes are valid");
-    let cloud = sample_supporter(&cloud_of, 10_000, case.seed);
+    let cloud = case.supporter_cloud();
     let params = Params::default();
-    let mesh = Mesh::new(&case.object.vertices, &case.object.triangles).expect("shapes are valid");
+    let mesh = case.object.mesh();
     let (mut object_memory, mut supporter_memory) = (Vec::new(), Vec::new());
     let monitor = Monitor::new();
     let object = analyze_object(&mesh, &params, &mut object_memory, &monitor).expect("memory is enough");
@@ -107,12 +110,12 @@ fn judge(case: &Case, count: usize) -> Vec<Said> {
     chosen
         .filter_map(|pose| {
             let verdict = Bullet::default().judge(&scene, &pose);
-            // What runs through the supporter is no candidate.
+            // A penetrating pose is not a candidate.
             if !verdict.clear {
                 return None;
             }
             let ours = let_go(&object, &supporter, &pose, &params, &mut memory, &monitor);
-            let ours = ours.expect("params are valid").expect("nothing stops it");
+            let ours = ours.expect("params are valid").expect("nothing cancels it");
             let figures = &verdict.figures;
             Some(Said {
                 core: ours.fate == Fate::Rests,

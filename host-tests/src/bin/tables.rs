@@ -1,4 +1,4 @@
-//! Predicts poses for many pairs, drops them in Bullet and ODE, and writes the tables.
+//! Predicts poses for many pairs, simulates their release in Bullet and ODE, and writes the tables.
 
 use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
@@ -12,48 +12,47 @@ use std::path::PathBuf;
 #[derive(Parser)]
 #[command(about)]
 struct Arguments {
-    /// Profiles, with commas between them.
+    /// Comma-separated profiles.
     #[arg(long, value_delimiter = ',', default_value = "paper,default")]
     profile: Vec<Profile>,
-    /// Pairs that fit, made by the shape library; two thirds as many that cannot hang, and a fifteenth as many on several contacts,
-    /// come on top.
+    /// Number of generated pairs that fit. Two thirds as many that cannot hang, and a fifteenth as many on several
+    /// contacts, are added.
     #[arg(long, default_value_t = 600)]
     pairs: usize,
     /// Seed of the sizes.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Only pairs with this kind of object, such as "cap", out of all that are made: what a hundred pairs say of one kind.
+    /// Restrict the generated pairs to this kind of object, such as "cap".
     #[arg(long, value_name = "KIND", value_parser = object_kind)]
     only: Option<String>,
-    /// Who judges. With both, the tables are Bullet's, and ODE is asked about the best pose of
-    /// made pairs.
+    /// Engine that judges. With both, the tables are by Bullet, and ODE also judges the best pose of generated pairs.
     #[arg(long, value_enum, default_value_t = Engine::Both)]
     engine: Engine,
-    /// A folder of real meshes with a manifest.json, judged as well.
+    /// Folder of real meshes with a manifest.json, which are evaluated as well.
     #[arg(long, value_name = "DIR")]
     meshes: Option<PathBuf>,
-    /// Pairs of real meshes at most.
+    /// Largest number of pairs of real meshes.
     #[arg(long, default_value_t = 200)]
     real_pairs: usize,
-    /// Where the tables go.
+    /// File for the tables.
     #[arg(long, value_name = "FILE", default_value = "docs/RESULTS.md")]
     out: PathBuf,
-    /// Where each row goes as it comes, a line of JSON each.
+    /// File for the rows, one line of JSON each.
     #[arg(long, value_name = "FILE", default_value = "build/tables.jsonl")]
     json: PathBuf,
-    /// A folder for a picture of each best pose, at release and at rest, named after what became of it.
+    /// Folder for pictures of the best poses at release and at rest, named after their outcomes.
     #[arg(long, value_name = "DIR")]
     gallery: Option<PathBuf>,
-    /// Drop all of the ten best poses, not only until one succeeds: for the calibration of the probability.
+    /// Judge all of the ten best poses, not only up to the first success, for the calibration of the probability.
     #[arg(long)]
     all: bool,
-    /// Only the profiles side by side.
+    /// Print only the tables that compare the profiles.
     #[arg(long)]
     summary: bool,
-    /// Keep the rows that the JSON file has, instead of beginning anew.
+    /// Keep the rows of the JSON file instead of starting over.
     #[arg(long)]
     resume: bool,
-    /// How many pairs at once.
+    /// Number of threads.
     #[arg(long, default_value_t = std::thread::available_parallelism().map_or(1, Into::into))]
     threads: usize,
 }
@@ -62,15 +61,15 @@ struct Arguments {
 enum Profile {
     /// The published method.
     Paper,
-    /// Ours.
+    /// The default method.
     Default,
-    /// The published method about the true centre of mass, without poses that collide.
+    /// The sites of the published method with the true centre of mass, without colliding poses.
     SitesOnly,
-    /// The same, let go: only what stays is given, the most probable first.
+    /// As `SitesOnly`, with simulated release: only poses that stay, the most probable first.
     SitesSettled,
-    /// Ours without gravity: the most promising contacts, as they are.
+    /// The default method without simulation: the most promising contact candidates.
     ContactsOnly,
-    /// Ours, at most eight poses let go once one stays.
+    /// The default method with at most eight releases once a pose stays.
     EightAttempts,
 }
 
@@ -89,13 +88,13 @@ impl Profile {
     }
 }
 
-/// A name of a kind of object, as the tables have it.
+/// Parses the name of a kind of object, as in the tables.
 fn object_kind(name: &str) -> Result<String, String> {
     let names = || OBJECTS.iter().map(|kind| kind.name);
     if names().any(|known| known == name) {
         return Ok(name.into());
     }
-    Err(format!("there is no such kind of object; there are {}", names().collect::<Vec<_>>().join(", ")))
+    Err(format!("there is no such kind of object; the kinds are {}", names().collect::<Vec<_>>().join(", ")))
 }
 
 fn main() -> Result<()> {
@@ -134,14 +133,14 @@ fn main() -> Result<()> {
     let made = work(case::made(arguments.pairs, arguments.seed), arguments.engine)?;
     let several = work(case::several(arguments.pairs / 15, arguments.seed), arguments.engine)?;
     let real = match &arguments.meshes {
-        // ODE takes minutes for a scan's thousands of triangles against those of another.
+        // ODE takes minutes to collide the thousands of triangles of two scans.
         Some(folder) => {
             let engine = if arguments.engine == Engine::Both { Engine::Bullet } else { arguments.engine };
             work(real::real(folder, arguments.real_pairs)?, engine)?
         }
         None => Vec::new(),
     };
-    let titled = [("Made pairs", &made), ("Several contacts", &several), ("Real meshes", &real)];
+    let titled = [("Generated pairs", &made), ("Several contacts", &several), ("Real meshes", &real)];
     let titled = titled.into_iter().filter(|(_, rows)| !rows.is_empty());
     if arguments.summary {
         titled.for_each(|(title, rows)| print!("{title}:\n\n{}", report::summary(rows)));

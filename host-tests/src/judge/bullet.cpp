@@ -1,4 +1,4 @@
-// Bullet behind the interface of engine.h: convex parts against convex parts.
+// Bullet with the interface of engine.h: convex parts against convex parts.
 #include "engine.h"
 
 #include <btBulletDynamicsCommon.h>
@@ -13,14 +13,15 @@
 
 namespace {
 
-// Bullet's own tolerances are absolute and meant for metres, so the world is simulated in centimetres: in
-// metres, pendulums, depths and wedges come out wrong.
+// Length units per metre. Bullet's tolerances are absolute and meant for large objects, so the world is simulated in
+// centimetres: in metres, pendulums, depths and wedges come out wrong.
 constexpr double SCALE = 100;
 constexpr btScalar MARGIN = btScalar(0.0002 * SCALE);
-// How far a contact may shift before it is found anew. Stale ones hold on: a pendulum on a thin bar is 2.4 % fast with
-// 1 mm, and 0.7 % with this.
+// Displacement at which a contact is discarded. Stale contacts hold the body: a pendulum on a thin bar is 2.4 % fast
+// with 1 mm, and 0.7 % fast with this value.
 constexpr btScalar BREAKING = btScalar(0.0001 * SCALE);
-constexpr btScalar LOAD = btScalar(0.01 * SCALE);  // what counts as bearing, as an acceleration: a thousandth of weight
+// Smallest load of a contact, as an acceleration: a thousandth of the weight.
+constexpr btScalar LOAD = btScalar(0.01 * SCALE);
 
 btVector3 vector(const double* v, double scale = 1) {
     return {btScalar(v[0] * scale), btScalar(v[1] * scale), btScalar(v[2] * scale)};
@@ -37,17 +38,17 @@ struct Deepest : btCollisionWorld::ContactResultCallback {
     }
 };
 
-// A hull as its compound sees it: what Bullet asks before it takes a close look at two parts whose boxes overlap. Shells
-// have so many of these that nearly all of the time would go there.
+// A hull in the frame of its compound, for a quick separation test of two parts whose boxes overlap. Shells have so
+// many such pairs that Bullet's narrow phase would take nearly all of the time.
 struct Facets {
     bool of_body;
     std::vector<btVector3> corners;
-    std::vector<btVector4> planes;  // outward normal, and how far along it the plane is
+    std::vector<btVector4> planes;  // outward normal and offset
 
     btVector3 middle{0, 0, 0};
-    btScalar reach = 0;  // of the corners from the middle
+    btScalar reach = 0;  // largest distance of a corner from the middle
 
-    // The ball around the hull first: it is far quicker to say.
+    // The bounding ball is tested first, since it is much cheaper.
     bool is_beyond(const Facets& other, const btTransform& to_other) const {
         constexpr btScalar NEAR = 2 * (MARGIN + BREAKING);
         btVector3 ball = to_other * middle;
@@ -64,7 +65,7 @@ struct Facets {
     }
 };
 
-// Where the body is whose world the thread is in.
+// The body of the world that this thread steps.
 thread_local const btCollisionObject* current = nullptr;
 
 bool are_close(const btCollisionShape* a, const btCollisionShape* b) {
@@ -101,12 +102,12 @@ struct World {
         btContactSolverInfo& info = world.getSolverInfo();
         info.m_splitImpulsePenetrationThreshold = 0;  // overlap is pushed apart without gaining speed
         info.m_restitutionVelocityThreshold *= btScalar(SCALE);
-        // Friction in two fixed directions; the default single one follows the slip and creeps when there is none.
+        // Friction in two fixed directions. The default single direction follows the slip and creeps without slip.
         info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
         btRigidBody::btRigidBodyConstructionInfo of_body(static_cast<btScalar>(setup.mass), nullptr, &compound,
                                                          vector(setup.inertia, SCALE * SCALE));
-        of_body.m_friction = friction;  // Bullet multiplies the two: the fixed shapes have 1
-        of_body.m_angularDamping = btScalar(1 - std::exp(-setup.damping));  // Bullet's is the part lost per second
+        of_body.m_friction = friction;  // Bullet multiplies both coefficients; the fixed shapes have 1
+        of_body.m_angularDamping = btScalar(1 - std::exp(-setup.damping));  // the fraction lost per second
         body = std::make_unique<btRigidBody>(of_body);
         body->setActivationState(DISABLE_DEACTIVATION);
         fixed.setCollisionShape(&fixed_compound);
@@ -140,7 +141,7 @@ void* create(const Setup* setup) { return new World(*setup); }
 
 void destroy(void* world) { delete static_cast<World*>(world); }
 
-// The margin rounds a hull off outwards, so the hull is made smaller by as much first.
+// The margin expands a hull, so the hull is shrunk by the margin first.
 void add_hull(void* world, bool body, const double* points, size_t count) {
     if (count == 0) return;
     std::vector<btVector3> all;
@@ -173,7 +174,7 @@ void add_hull(void* world, bool body, const double* points, size_t count) {
         btVector4 plane(normal.x(), normal.y(), normal.z(), std::abs(along) + normal.dot(middle));
         facets->planes.push_back(plane);
     }
-    // A flat set has no hull for Bullet, and a shape without points crashes it.
+    // Bullet computes no hull of a flat set, and a shape without points crashes it.
     if (hull.vertices.size() == 0)
         for (const btVector3& point : all) shape->addPoint(point, false);
     shape->recalcLocalAabb();
@@ -196,7 +197,7 @@ void add_box(void* world, bool body, const double* centre, const double* axes, c
     btVector3 x = vector(axes), y = vector(axes + 3), z = vector(axes + 6);
     btMatrix3x3 turn(x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]);
     btVector3 half = scaled(half_extents);
-    auto shape = std::make_unique<btBoxShape>(half);  // keeps its margin inside
+    auto shape = std::make_unique<btBoxShape>(half);  // includes its margin
     shape->setMargin(std::min(MARGIN, half[half.minAxis()] / 2));
     of(world).add(body, std::move(shape), btTransform(turn, scaled(centre)));
 }
@@ -204,7 +205,7 @@ void add_box(void* world, bool body, const double* centre, const double* axes, c
 void place(void* handle, const State* state) {
     World& it = of(handle);
     if (it.body->getBroadphaseHandle()) it.world.removeRigidBody(it.body.get());
-    // Only now are all of its shapes there, which its bounds are of.
+    // The bounds are those of all shapes, which are complete only now.
     if (!it.fixed.getBroadphaseHandle())
         it.world.addCollisionObject(&it.fixed, btBroadphaseProxy::StaticFilter,
                                     btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);

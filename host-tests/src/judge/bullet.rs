@@ -6,7 +6,7 @@ use super::{Judge, Scene};
 /// Judges with Bullet.
 #[derive(Clone, Copy, Debug)]
 pub struct Bullet {
-    /// Seconds.
+    /// Time step, s.
     pub time_step: f64,
 }
 

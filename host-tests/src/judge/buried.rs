@@ -1,20 +1,21 @@
-//! Depth that triangles do not show: a surface that has another shape wholly inside touches nothing.
+//! Penetration without contact between surfaces: one shape wholly inside another.
 
 use super::Scene;
 use crate::solid::{Part, Solid};
 use crate::winding::Winding;
 use nalgebra::{Isometry3, Point3, Vector3};
 
-/// Points of a supporter's part are looked for inside the object this far apart, metres.
+/// Spacing of the points of a capsule that are tested against the object, m.
 const SPACING: f32 = 0.01;
 
+/// Penetration of the supporter's interior points into the object.
 pub(super) struct Buried {
     vertices: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
     winding: Winding,
     low: Point3<f64>,
     high: Point3<f64>,
-    /// Points deep in the supporter, and how much of it is around each.
+    /// Interior points of the supporter, each with the radius of a ball around it inside the part, m.
     cores: Vec<(Point3<f64>, f64)>,
 }
 
@@ -30,7 +31,7 @@ impl Buried {
         Self { vertices, triangles: triangles.clone(), winding, low, high, cores }
     }
 
-    /// How deep the supporter's cores are inside the object, and the ball around each with it; 0 when none is.
+    /// Largest penetration depth of the balls around the cores, m; 0 if no core is inside the object.
     pub(super) fn depth(&self, pose: &Isometry3<f64>) -> f64 {
         let into_object = pose.inverse();
         let mut deepest = 0.0_f64;
@@ -56,7 +57,7 @@ impl Buried {
     }
 }
 
-/// From a point to a triangle: to its plane if it is above the inside, or else to the nearest edge.
+/// Distance from a point to a triangle: to its plane if the projection is inside, otherwise to the nearest edge.
 fn distance(point: &Point3<f64>, [a, b, c]: [Point3<f64>; 3]) -> f64 {
     let normal = (b - a).cross(&(c - a));
     let inside = |p: &Point3<f64>, q: &Point3<f64>| normal.cross(&(q - p)).dot(&(point - p)) >= 0.0;

@@ -1,4 +1,4 @@
-//! How a solid's mass is spread.
+//! Mass properties of a solid.
 
 use crate::solid::Solid;
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
@@ -6,25 +6,25 @@ use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, UnitQuaternion, Vector3};
 /// Mass properties of a rigid body.
 #[derive(Clone, Copy, Debug)]
 pub struct Mass {
-    /// Kilograms.
+    /// Mass, kg.
     pub mass: f64,
     /// Principal moments of inertia about the centre of mass, kg m².
     pub inertia: [f64; 3],
-    /// The centre of mass and the principal axes: maps their coordinates to the solid's.
+    /// Frame of the centre of mass and the principal axes: maps its coordinates to the solid's.
     pub frame: Isometry3<f64>,
 }
 
 impl Mass {
-    /// Of a solid of one density that weighs `mass` kilograms; where bodies of its surface overlap it is denser. If the
-    /// surface is not closed, or bounds nothing, it is a sheet of one thickness.
+    /// Mass properties of a solid of uniform density and `mass` kilograms. Where bodies overlap, the volume counts
+    /// twice. A surface that is not closed, or has no volume, is a sheet of uniform thickness.
     pub fn of(solid: &Solid, mass: f64) -> Self {
         let at = |index: u32| Vector3::from(solid.vertices[index as usize]).cast::<f64>();
-        // Near the surface, so that nothing large cancels.
+        // An origin near the surface avoids cancellation.
         let origin = solid.triangles.first().map_or_else(Vector3::zeros, |triangle| at(triangle[0]));
         let (mut volume, mut area) = (Integrals::default(), Integrals::default());
         for &triangle in &solid.triangles {
             let [a, b, c] = triangle.map(|index| at(index) - origin);
-            // A tetrahedron has a corner at the origin too.
+            // The fourth corner of the tetrahedron is the origin.
             volume.add(a.dot(&b.cross(&c)), [a, b, c], [6.0, 24.0, 120.0]);
             area.add((b - a).cross(&(c - a)).norm(), [a, b, c], [2.0, 6.0, 24.0]);
         }
@@ -47,7 +47,7 @@ impl Mass {
     }
 }
 
-/// What is closed but has less volume for its surface, metres, is a folded sheet.
+/// Smallest ratio of volume to area of a solid, m. A closed surface below it is a folded sheet.
 const LEAST_THICKNESS: f64 = 1e-6;
 
 /// Integrals of 1, x and x xᵀ.
@@ -59,8 +59,8 @@ struct Integrals {
 }
 
 impl Integrals {
-    /// Adds those of a simplex of n dimensions: the determinant of its edges, its corners, of which one more may be the
-    /// origin, and the factorials of n, n + 1 and n + 2.
+    /// Adds the integrals over a simplex of n dimensions: `determinant` of its edges, three `corners` (a tetrahedron's
+    /// fourth is the origin), and `factorials` of n, n + 1 and n + 2.
     fn add(&mut self, determinant: f64, corners: [Vector3<f64>; 3], factorials: [f64; 3]) {
         let [a, b, c] = corners;
         let sum = a + b + c;
@@ -98,7 +98,7 @@ mod tests {
         for (moment, expected) in moments.iter().zip(expected) {
             assert!((moment / expected - 1.0).abs() < 1e-4, "{moments:?}");
         }
-        // The axes are the box's, and the frame is a rotation, not a reflection.
+        // The principal axes are those of the box.
         for axis in mass.frame.rotation.to_rotation_matrix().matrix().column_iter() {
             let along = pose.rotation.cast::<f64>().inverse() * axis.into_owned();
             assert!((along.amax() - 1.0).abs() < 1e-4, "{along}");

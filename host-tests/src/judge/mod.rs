@@ -1,8 +1,9 @@
-//! What becomes of an object that is let go at a predicted pose: a verdict, from either of two physics engines.
+//! Verdicts on predicted poses by either of two physics engines, which simulate the release of the object.
 //!
-//! [`Bullet`] drops convex parts onto convex parts. [`Ode`] drops the object's triangles onto the supporter. So the two
-//! share neither an engine nor an approximation of the shapes, and where they agree it is not for a common fault. Meshes of
-//! unknown make are shells, whose overlap at the release is measured on the meshes themselves.
+//! [`Bullet`] collides convex parts with convex parts. [`Ode`] collides the object's triangles with the supporter. The
+//! two share neither an engine nor an approximation of the shapes, so that their agreement has no common cause of
+//! error. Arbitrary meshes are represented by shells; their penetration at release is measured on the meshes
+//! themselves.
 
 mod bullet;
 mod buried;
@@ -22,33 +23,33 @@ pub use world::{State, World};
 use crate::solid::Solid;
 use nalgebra::Isometry3;
 
-/// Of the object against the supporter.
+/// Coefficient of friction between object and supporter.
 pub const FRICTION: f64 = 0.4;
-/// Per second. Rigid bodies that roll on each other swing for ever; things swing out, because they rub, give and stir
-/// the air. Falling is not slowed.
+/// Damping rate of rotation, 1/s. Rigid bodies that roll on each other swing forever; real objects lose energy to
+/// friction, deformation and air. Translation is not damped.
 pub const DAMPING: f64 = 1.0;
-/// Metres per second squared, along -z of the supporter.
+/// Gravitational acceleration along -z of the supporter, m/s².
 pub const GRAVITY: f64 = 9.81;
 
-/// An object, a supporter that does not move, and what the object weighs.
+/// An object, its mass properties, and a fixed supporter.
 #[derive(Clone, Debug)]
 pub struct Scene<'a> {
-    /// What is to hang.
+    /// The object to hang.
     pub object: &'a Solid,
-    /// What it hangs on.
+    /// The supporter.
     pub supporter: &'a Solid,
-    /// How the object's mass is spread.
+    /// Mass properties of the object.
     pub mass: Mass,
-    /// The coefficient of friction: [`FRICTION`] unless changed.
+    /// Coefficient of friction; the default is [`FRICTION`].
     pub friction: f64,
-    /// The rate at which rotation dies down, per second: [`DAMPING`] unless changed.
+    /// Damping rate of rotation, 1/s; the default is [`DAMPING`].
     pub damping: f64,
-    /// Whether to tilt gravity too, which takes most of the time. Nothing is robust if not.
+    /// Whether to test under tilted gravity, which takes most of the time. Without it no verdict is robust.
     pub tilt: bool,
 }
 
 impl<'a> Scene<'a> {
-    /// An object of 200 g, of one density throughout.
+    /// An object of 200 g and uniform density.
     pub fn new(object: &'a Solid, supporter: &'a Solid) -> Self {
         Self {
             object,
@@ -66,15 +67,15 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Whoever drops an object and watches.
+/// A physics engine that judges poses.
 pub trait Judge: Sync {
-    /// For tables.
+    /// Name of the engine, for tables.
     fn name(&self) -> &'static str;
 
-    /// The scene as the engine sees it, for a closer look than a verdict gives.
+    /// The scene in the engine, for more detail than a verdict gives.
     fn world(&self, scene: &Scene) -> World;
 
-    /// What becomes of the object when it is let go at `release`, which maps object to supporter coordinates.
+    /// Verdict on the release of the object at `release`, which maps object to supporter coordinates.
     fn judge(&self, scene: &Scene, release: &Isometry3<f32>) -> Verdict {
         self.world(scene).judge(scene, release)
     }

@@ -1,4 +1,4 @@
-// ODE behind the interface of engine.h: the object's triangles against capsules, boxes and triangles.
+// ODE with the interface of engine.h: the object's triangles against capsules, boxes and triangles.
 #include "engine.h"
 
 #include <ode/ode.h>
@@ -12,21 +12,21 @@
 
 namespace {
 
-constexpr int MOST_FOUND = 256;     // contacts of one pair of shapes as ODE finds them
-constexpr size_t MOST_KEPT = 16;    // contacts of the body as they are solved
-constexpr double MERGE = 0.001;     // contacts closer than this that push alike are one
-constexpr double ALIKE = 0.95;      // the cosine up to which they push alike
-constexpr double LOAD = 0.01;       // what counts as bearing, as an acceleration: a thousandth of weight
-constexpr double LAYER = 0.00005;   // contacts may sink this deep, so that they stay contacts
+constexpr int MOST_FOUND = 256;     // largest number of contacts that ODE finds per pair of shapes
+constexpr size_t MOST_KEPT = 16;    // largest number of contacts that are solved
+constexpr double MERGE = 0.001;     // distance below which contacts with similar normals are merged, m
+constexpr double ALIKE = 0.95;      // cosine of the angle above which normals are similar
+constexpr double LOAD = 0.01;       // smallest load of a contact, as an acceleration: a thousandth of the weight
+constexpr double LAYER = 0.00005;   // penetration that is not corrected, so that contacts persist, m
 
-// ODE may be built without thread-local data, as Debian's is. Then the caches of its triangle colliders are shared by
-// all threads, so whoever collides, loads or frees triangles holds this.
+// Lock for every collision, load and release of triangles. ODE may be built without thread-local data, as Debian's is;
+// then all threads share the caches of its triangle colliders.
 std::mutex& colliders() {
     static std::mutex mutex;
     return mutex;
 }
 
-// ODE wants to be told of every thread that collides.
+// Registers a thread with ODE, which every colliding thread requires.
 struct Thread {
     Thread() {
         static std::once_flag once;
@@ -45,7 +45,7 @@ struct Triangles {
 
 struct World {
     dWorldID world = dWorldCreate();
-    // Its own, because the default one is shared by all worlds and locks nothing.
+    // Its own implementation, because all worlds share the default one without locks.
     dThreadingImplementationID threading = dThreadingAllocateSelfThreadedImplementation();
     dJointGroupID joints = dJointGroupCreate(0);
     dBodyID body = dBodyCreate(world);
@@ -79,7 +79,7 @@ struct World {
         dThreadingFreeImplementation(threading);
     }
 
-    // With `turn` the shape's axes as the columns of a rotation.
+    // The columns of `turn` are the axes of the shape.
     void add(bool to_body, dGeomID geom, const double* centre, const dMatrix3 turn) {
         if (to_body) {
             dGeomSetBody(geom, body);
@@ -93,7 +93,7 @@ struct World {
         }
     }
 
-    // Every contact, the deepest first; their normals point into the body.
+    // Collects all contacts, deepest first. Normals point into the body.
     void collide() {
         all.clear();
         std::lock_guard<std::mutex> lock(colliders());
@@ -114,7 +114,8 @@ struct World {
                          [](const dContactGeom& x, const dContactGeom& y) { return x.depth > y.depth; });
     }
 
-    // Triangles give many contacts for one place: keep the deepest of those that are close and push alike.
+    // Triangles produce many contacts at one place: of those that are close and have similar normals the deepest is
+    // kept.
     void thin_out() {
         kept.clear();
         for (const dContactGeom& contact : all) {

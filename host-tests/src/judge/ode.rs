@@ -7,7 +7,7 @@ use crate::solid::Part;
 /// Judges with ODE.
 #[derive(Clone, Copy, Debug)]
 pub struct Ode {
-    /// Seconds.
+    /// Time step, s.
     pub time_step: f64,
 }
 
@@ -25,7 +25,7 @@ impl Judge for Ode {
     fn world(&self, scene: &Scene) -> World {
         let mut world = World::new(ODE, scene, self.time_step);
         world.add_mesh(scene.object, Some(&scene.mass.frame.inverse()));
-        // One hull and the whole supporter is its triangles: they are what the hulls stand for.
+        // The shim takes no hulls. If any part is one, the triangles of the surface replace all parts.
         if scene.supporter.parts.iter().any(|part| matches!(part, Part::Hull(_))) {
             world.add_mesh(scene.supporter, None);
         } else {

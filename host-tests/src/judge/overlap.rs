@@ -1,7 +1,8 @@
-//! How deep two surfaces are in each other, whatever they are made of.
+//! Penetration depth of two arbitrary surfaces.
 //!
-//! The depth is that of the literature: the shortest shift after which nothing overlaps any more. It is tried out. What
-//! an engine says of a shell's prisms is no measure of it, since none is deeper than the shell is thick.
+//! The depth is the usual one: the length of the shortest translation that separates the shapes. It is found by trial.
+//! An engine's depth for the prisms of a shell is not a measure of it, since it cannot exceed the thickness of the
+//! shell.
 
 use super::Scene;
 use crate::solid::Solid;
@@ -12,13 +13,16 @@ use nalgebra::{Isometry3, Point3, Translation3, Vector3};
 use parry3d::query;
 use parry3d::shape::TriMesh;
 
-/// Shifts that are tried, metres. The last is not passed: what overlaps more deeply is said to be this deep.
+/// Lengths of the translations that are tried, m. The last one is also the depth of anything deeper.
 const SHIFTS: [f64; 8] = [0.00025, 0.0005, 0.001, 0.0015, 0.002, 0.004, 0.008, 0.016];
-/// Surfaces are held in millimetres: in metres, parry's tolerances make narrow triangles meet that are far apart.
+/// Scale of the surfaces, from metres to millimetres: in metres, parry's tolerances make narrow triangles intersect
+/// that are far apart.
 const SCALE: f32 = 1000.0;
-/// Vertices of each shape that are looked for inside the other. If no surfaces cross, one of each body would do.
+/// Number of vertices of each shape that are tested for being inside the other. Without crossing surfaces one vertex
+/// per body would suffice.
 const PROBES: usize = 8;
 
+/// An overlap test of an object and a supporter.
 pub(crate) struct Overlap {
     object: Side,
     supporter: Side,
@@ -28,7 +32,7 @@ pub(crate) struct Overlap {
 struct Side {
     surface: TriMesh,
     probes: Vec<Point3<f64>>,
-    /// Only what is closed can have something inside.
+    /// Winding number, for closed surfaces only.
     inside: Option<Winding>,
 }
 
@@ -37,7 +41,7 @@ impl Overlap {
         Self { object: Side::new(scene.object), supporter: Side::new(scene.supporter) }
     }
 
-    /// The least of [`SHIFTS`] that frees the object; 0 if it is free.
+    /// The smallest of [`SHIFTS`] that separates the shapes, m; 0 if they do not overlap.
     pub(super) fn depth(&self, pose: &Isometry3<f64>) -> f64 {
         if self.is_free(pose) {
             return 0.0;
@@ -49,7 +53,7 @@ impl Overlap {
         SHIFTS.into_iter().find(frees).unwrap_or(deepest)
     }
 
-    /// Whether nothing overlaps.
+    /// Whether the shapes do not overlap.
     pub(crate) fn is_free(&self, pose: &Isometry3<f64>) -> bool {
         let mut into_supporter: Pose = pose.cast();
         into_supporter.translation.vector *= SCALE;
@@ -92,7 +96,7 @@ fn corners(solid: &Solid) -> impl Iterator<Item = [Point3<f64>; 3]> {
     solid.triangles.iter().map(move |triangle| triangle.map(at))
 }
 
-/// Towards the faces, edges and corners of a cube.
+/// Unit vectors towards the faces, edges and corners of a cube.
 fn directions() -> impl Iterator<Item = Vector3<f64>> {
     (0..27).filter_map(|k| {
         Vector3::from([k % 3, k / 3 % 3, k / 9].map(|digit| f64::from(digit) - 1.0)).try_normalize(0.0)

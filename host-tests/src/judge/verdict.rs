@@ -1,33 +1,33 @@
-//! The course of a trial, the same in every engine, and what is concluded from it.
+//! The definition of hanging and the course of a trial, the same in both engines.
 
 use super::{GRAVITY, Scene, State, World};
 use nalgebra::{Isometry3, Point3, Vector3};
 
-/// What counts as hanging. The numbers are the definition; they are here to be named, not to be tuned.
+/// Limits that define hanging. They are named here and are not tuning parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// The deepest that a clear pose may penetrate, metres.
+    /// Largest penetration depth of a clear pose, m.
     pub penetration: f64,
-    /// How long it has to hold, seconds.
+    /// Duration for which the object must hold, s.
     pub settling: f64,
-    /// How far the centre of mass may sink, metres, or else [`Limits::sinking_extents`].
+    /// Largest sinking of the centre of mass, m; the larger of this and [`Limits::sinking_extents`] applies.
     pub sinking: f64,
-    /// The same in multiples of the object's largest extent.
+    /// Largest sinking of the centre of mass in multiples of the object's largest extent.
     pub sinking_extents: f64,
-    /// How fast it may still be at the end, metres per second.
+    /// Largest speed of the centre of mass at the end, m/s.
     pub speed: f64,
-    /// How long it has to come free when gravity is reversed, seconds.
+    /// Duration of reversed gravity, within which the object must come free, s.
     pub reversal: f64,
-    /// How far it has to have moved then, metres.
+    /// Smallest displacement of the centre of mass that counts as free, m.
     pub travel: f64,
-    /// How far gravity is tilted, radians.
+    /// Angle by which gravity is tilted, rad.
     pub tilt: f64,
-    /// How long it has to stay then, seconds.
+    /// Duration of each tilt, s.
     pub tilting: f64,
 }
 
 impl Limits {
-    /// The definition.
+    /// The limits of the definition.
     pub const DEFINITION: Self = Self {
         penetration: 0.002,
         settling: 4.0,
@@ -41,70 +41,70 @@ impl Limits {
     };
 }
 
-/// What became of an object that was let go.
+/// Verdict on the release of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verdict {
-    /// At the predicted pose nothing penetrates deeper than 2 mm.
+    /// The penetration depth at the predicted pose is at most 2 mm.
     pub clear: bool,
-    /// After 4 s it still touches the supporter, has sunk no further than it may, and is slow.
+    /// After 4 s the object touches the supporter, has sunk less than the limit, and is slower than the limit.
     pub holds: bool,
-    /// With gravity reversed it comes free within 1.5 s: at some moment nothing bears on it and
-    /// it has moved. What is
-    /// wedged through the supporter does not. (It need not get away: a ring lifts off a peg, and then hangs upwards.)
-    /// False when it does not hold.
+    /// With gravity reversed, the object comes free within 1.5 s: at some moment no contact force acts on it and it has
+    /// moved. An object that is wedged through the supporter does not. It need not leave the supporter: a ring lifts
+    /// off a peg and then hangs upwards. False if the object does not hold.
     pub honest: bool,
-    /// From rest it stays through gravity tilted by 21.8 degrees towards each of four sides. False when it does not
-    /// hold, or was not tried.
+    /// From its rest pose the object stays under gravity tilted by 21.8 degrees towards each of four sides. False if
+    /// the object does not hold or the test was not run.
     pub robust: bool,
-    /// What the above was concluded from.
+    /// Measurements behind the verdict.
     pub figures: Figures,
 }
 
 impl Verdict {
-    /// Whether it hangs.
+    /// Whether the object hangs: clear, holds and honest.
     pub fn success(&self) -> bool {
         self.clear && self.holds && self.honest
     }
 }
 
-/// What was measured.
+/// Measurements of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figures {
-    /// The deepest at the predicted pose, metres.
+    /// Largest penetration depth at the predicted pose, m.
     pub penetration: f64,
-    /// How far the centre of mass sank, metres.
+    /// Sinking of the centre of mass, m.
     pub sank: f64,
-    /// Of the centre of mass at the end, metres per second.
+    /// Speed of the centre of mass at the end, m/s.
     pub speed: f64,
-    /// Whether it touches the supporter at the end.
+    /// Whether the object touches the supporter at the end.
     pub touches: bool,
-    /// When it had sunk too far for good, seconds after the release.
+    /// Time after release from which the sinking stayed above its limit, s.
     pub fell_after: Option<f64>,
-    /// Whether it stays when gravity is tilted towards +x, -x, +y and -y.
+    /// Whether the object stays under gravity tilted towards +x, -x, +y and -y.
     pub tilts: [bool; 4],
-    /// Where it came to rest, or was seen last. Maps object to supporter coordinates.
+    /// Rest pose, or the last pose of an object that falls. Maps object to supporter coordinates.
     pub rest: Isometry3<f32>,
-    /// The angle between release and rest, radians.
+    /// Rotation angle between release and rest, rad.
     pub turned: f64,
 }
 
-/// How often it is looked at, seconds.
+/// Interval between observations, s.
 const LOOK: f64 = 0.01;
-/// The same while it comes free: what lies in a hole with 2 mm of play flies freely for 20 ms.
+/// Interval between observations under reversed gravity, s: in a hole with 2 mm of play an object is free for 20 ms.
 const LOOK_CLOSELY: f64 = 0.001;
-/// Slower than this, metres per second of any of its points, it is still; and when it was still for so long, seconds,
-/// then the rest of a phase is not waited for.
+/// Speed of the fastest point of the object below which it counts as still, m/s.
 const STILL: f64 = 0.001;
+/// Duration of stillness after which a phase ends early, s.
 const STILL_FOR: f64 = 0.5;
 
 struct Trial<'a> {
     world: &'a mut World,
-    /// From the centre of mass to the farthest vertex.
+    /// Distance from the centre of mass to the farthest vertex, m.
     reach: f64,
-    /// The supporter's box.
+    /// Lower corner of the supporter's bounding box.
     low: Point3<f64>,
+    /// Upper corner of the supporter's bounding box.
     high: Point3<f64>,
-    /// How far the centre of mass may sink.
+    /// Largest permitted sinking of the centre of mass, m.
     limit: f64,
 }
 
@@ -159,7 +159,7 @@ pub(super) fn examine(world: &mut World, scene: &Scene, release: &Isometry3<f64>
 }
 
 impl Trial<'_> {
-    /// Lets gravity act, until time is up or it is clear how that would end.
+    /// Simulates from `start` under `gravity`, until the time is over or the outcome is certain.
     fn phase(&mut self, start: &State, gravity: Vector3<f64>, seconds: f64) -> Phase {
         self.world.place(start);
         self.world.pull(gravity);
@@ -180,12 +180,13 @@ impl Trial<'_> {
         }
     }
 
-    /// Whether it has fallen past all of the supporter.
+    /// Whether the object has fallen past the whole supporter.
     fn out_of_reach(&self, state: &State, down: &Vector3<f64>) -> bool {
         let lowest: f64 = (0..3).map(|i| (self.low[i] * down[i]).max(self.high[i] * down[i])).sum();
         state.velocity.dot(down) > 0.0 && state.centre.dot(down) > lowest + self.reach
     }
 
+    /// Whether the object comes free from `rest` under reversed gravity.
     fn comes_free(&mut self, rest: &State, limits: &Limits) -> bool {
         self.world.place(rest);
         self.world.pull(Vector3::new(0.0, 0.0, GRAVITY));

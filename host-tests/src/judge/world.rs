@@ -1,4 +1,4 @@
-//! A rigid body among fixed shapes in a physics engine. All that is unsafe about the judges is here.
+//! A rigid body among fixed shapes in a physics engine. This file has all unsafe code of the judges.
 
 use super::buried::Buried;
 use super::overlap::Overlap;
@@ -7,7 +7,7 @@ use crate::solid::{Part, Solid};
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use std::ffi::c_void;
 
-// These mirror engine.h.
+// The types below mirror engine.h.
 
 #[repr(C)]
 struct Setup {
@@ -47,7 +47,7 @@ pub(super) struct Engine {
 }
 
 unsafe extern "C" {
-    // SAFETY: constants of the shims, of the type that engine.h gives them, and only ever read.
+    // SAFETY: a constant of the shim with the type that engine.h declares; it is only read.
     safe static hangpose_bullet: Engine;
     // SAFETY: as above.
     safe static hangpose_ode: Engine;
@@ -56,20 +56,20 @@ unsafe extern "C" {
 pub(super) static BULLET: &Engine = &hangpose_bullet;
 pub(super) static ODE: &Engine = &hangpose_ode;
 
-/// Where the body is and how it moves.
+/// Pose and velocity of the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
-    /// Maps object to supporter coordinates.
+    /// Pose, which maps object to supporter coordinates.
     pub pose: Isometry3<f64>,
-    /// The centre of mass, in supporter coordinates.
+    /// Centre of mass in supporter coordinates, m.
     pub centre: Vector3<f64>,
-    /// Of the centre of mass, metres per second.
+    /// Velocity of the centre of mass, m/s.
     pub velocity: Vector3<f64>,
-    /// Radians per second, in supporter coordinates.
+    /// Angular velocity in supporter coordinates, rad/s.
     pub spin: Vector3<f64>,
 }
 
-/// One scene in one engine. It belongs to the thread that made it; threads may each have their own.
+/// One scene in one engine. It belongs to the thread that created it; each thread may have its own.
 pub struct World {
     engine: &'static Engine,
     handle: Handle,
@@ -93,7 +93,8 @@ impl World {
         world
     }
 
-    /// Adds a part: to the body, whose coordinates `into_body` leads to, or else to what is fixed.
+    /// Adds a part to the body, with `into_body` from object to body coordinates, or to the fixed shapes if that is
+    /// `None`.
     pub(super) fn add_part(&mut self, part: &Part, into_body: Option<&Isometry3<f64>>) {
         let body = into_body.is_some();
         let pose = into_body.copied().unwrap_or_default();
@@ -103,7 +104,7 @@ impl World {
                 let points: Vec<f64> =
                     points.iter().flat_map(|point| <[f64; 3]>::from(place(point))).collect();
                 if let Some(add_hull) = self.engine.add_hull {
-                    // SAFETY: the handle is alive; `points` has three numbers for each that the count says.
+                    // SAFETY: the handle is alive; `points` has three numbers for each of the counted points.
                     unsafe { add_hull(self.handle, body, points.as_ptr(), points.len() / 3) }
                 }
             }
@@ -139,13 +140,16 @@ impl World {
         }
     }
 
-    /// Adds a surface, as [`World::add_part`] adds a part.
+    /// Adds a surface, with the same `into_body` as [`World::add_part`].
     pub(super) fn add_mesh(&mut self, solid: &Solid, into_body: Option<&Isometry3<f64>>) {
         let pose = into_body.copied().unwrap_or_default();
         let place = |point: &[f32; 3]| <[f64; 3]>::from((pose * Point3::from(*point).cast::<f64>()).coords);
         let vertices: Vec<f64> = solid.vertices.iter().flat_map(place).collect();
         let corners = solid.triangles.as_flattened();
-        assert!(corners.iter().all(|&corner| (corner as usize) < solid.vertices.len()), "no such vertex");
+        assert!(
+            corners.iter().all(|&corner| (corner as usize) < solid.vertices.len()),
+            "a triangle uses a vertex that does not exist"
+        );
         if let Some(add_mesh) = self.engine.add_mesh {
             // SAFETY: the handle is alive; the counts are those of the slices, and every index is of a vertex.
             unsafe {
@@ -161,13 +165,13 @@ impl World {
         }
     }
 
-    /// Lets [`World::penetration`] also find what has sunk into a surface without touching it.
+    /// Makes [`World::penetration`] also detect shapes wholly inside the object.
     pub(super) fn look_inside(&mut self, scene: &Scene) {
         self.buried = Some(Buried::new(scene));
     }
 
-    /// Puts the body where `state` says, moving as it says, with no memory of earlier contacts. The centre follows
-    /// from the pose.
+    /// Sets pose and velocities of the body and discards all contacts. `state.centre` is ignored; it follows from the
+    /// pose.
     pub fn place(&mut self, state: &State) {
         let body = state.pose * self.frame;
         let raw = RawState {
@@ -180,20 +184,20 @@ impl World {
         unsafe { (self.engine.place)(self.handle, &raw) }
     }
 
-    /// Puts the body at a pose and at rest.
+    /// Puts the body at a pose with zero velocity.
     pub fn release(&mut self, pose: &Isometry3<f64>) {
         let still = Vector3::zeros();
         self.place(&State { pose: *pose, centre: still, velocity: still, spin: still });
     }
 
-    /// Sets gravity, metres per second squared.
+    /// Sets the gravitational acceleration, m/s².
     pub fn pull(&mut self, gravity: Vector3<f64>) {
         // SAFETY: the handle is alive; the vector is three numbers.
         unsafe { (self.engine.pull)(self.handle, gravity.as_ptr()) }
     }
 
-    /// Lets time pass, in whole steps and at least one. Returns in what share of the steps
-    /// something bore on the body: to graze is not enough.
+    /// Simulates for `seconds`, rounded to at least one whole step. Returns the fraction of the steps in which a
+    /// contact carried load; grazing contacts do not count.
     pub fn pass(&mut self, seconds: f64) -> f64 {
         let steps = (seconds / self.time_step).round().max(1.0) as u32;
         // SAFETY: the handle is alive.
@@ -201,7 +205,7 @@ impl World {
         f64::from(loaded) / f64::from(steps)
     }
 
-    /// Where the body is now.
+    /// Current state of the body.
     pub fn state(&self) -> State {
         let mut raw = RawState::default();
         // SAFETY: the handle is alive; `raw` is written within the call only.
@@ -216,12 +220,12 @@ impl World {
         }
     }
 
-    /// What becomes of the body when it is let go at `release`; `scene` is what the world was made of.
+    /// Verdict on the release of the body at `release`. `scene` must be the scene of this world.
     pub fn judge(&mut self, scene: &Scene, release: &Isometry3<f32>) -> Verdict {
         verdict::examine(self, scene, &release.cast())
     }
 
-    /// How deep the body is in something where it is now, metres; 0 when it is in nothing.
+    /// Penetration depth at the current pose, m; 0 without overlap.
     pub fn penetration(&mut self) -> f64 {
         if let Some(overlap) = &self.overlap {
             return overlap.depth(&self.state().pose);

@@ -1,10 +1,10 @@
-//! Bodies from a few rules, mesh and convex parts at once, so that the two cannot drift apart.
+//! Construction of bodies. Every operation adds mesh and convex parts together, so that they agree.
 
 use super::sections::{circle, corners_of};
-use super::vector::{V, X, Y, Z, across, add, along, cross, dot, length, scale, single, sub, turn, unit};
+use super::vector::{V, X, Y, Z, add, along, face_outwards, frames, length, scale, single, sub, turn, unit};
 use crate::solid::{Part, Solid};
 
-/// A shape in the making. Every method adds one closed body, and the convex parts that fill it.
+/// A shape under construction. Every method adds one closed body and the convex parts that fill it.
 #[derive(Clone, Default)]
 pub(crate) struct Builder {
     vertices: Vec<V>,
@@ -19,7 +19,8 @@ enum Convex {
     Cuboid(V, [V; 3], V),
 }
 
-/// Tangents at the distinct points of a path, and whether it is closed, which is if it ends where it began.
+/// Unit tangents at the distinct points of a path, and whether it is closed. A path is closed if it ends at its first
+/// point.
 fn tangents(path: &[V]) -> (Vec<V>, bool) {
     let is_closed = length(sub(path[0], path[path.len() - 1])) < 1e-9;
     let n = path.len() - usize::from(is_closed);
@@ -52,7 +53,7 @@ impl Builder {
         }
     }
 
-    /// Adds `other`, whose x, y and z go along the unit vectors `axes` (right-handed) and whose origin to `origin`.
+    /// Adds `other` with its x, y and z along the right-handed unit vectors `axes` and its origin at `origin`.
     pub(crate) fn place(&mut self, other: &Self, axes: [V; 3], origin: V) {
         let to = |v: V| along(along(along(origin, v[0], axes[0]), v[1], axes[1]), v[2], axes[2]);
         let turned = |v: V| sub(to(v), origin);
@@ -66,23 +67,16 @@ impl Builder {
         }));
     }
 
-    /// Adds a closed surface and turns it so that it faces outwards.
+    /// Adds a closed surface and makes it face outwards.
     fn body(&mut self, vertices: Vec<V>, mut triangles: Vec<[usize; 3]>) {
-        let volume: f64 = triangles
-            .iter()
-            .map(|t| t.map(|i| sub(vertices[i], vertices[0])))
-            .map(|[a, b, c]| dot(a, cross(b, c)))
-            .sum();
-        if volume < 0.0 {
-            triangles.iter_mut().for_each(|t| t.swap(1, 2));
-        }
+        face_outwards(&vertices, &mut triangles);
         let first = self.vertices.len();
         self.vertices.extend(vertices);
         self.triangles.extend(triangles.into_iter().map(|t| t.map(|i| i + first)));
     }
 
-    /// Skins convex polygons with the same number of corners, one after another (the first again after the last
-    /// if closed); a first or last polygon of one point is a tip. A hull for each pair.
+    /// Adds the body between consecutive convex polygons with equal numbers of corners. If closed, the first polygon
+    /// also follows the last. A first or last polygon of one point is a tip. Each pair gives one hull.
     pub(crate) fn loft(&mut self, rings: &[Vec<V>], is_closed: bool) {
         self.skin(rings, is_closed);
         for i in 1..rings.len() + usize::from(is_closed) {
@@ -91,6 +85,7 @@ impl Builder {
         }
     }
 
+    /// Adds the surface of a loft without parts.
     fn skin(&mut self, rings: &[Vec<V>], is_closed: bool) {
         let mut triangles = Vec::new();
         let firsts: Vec<usize> = rings
@@ -125,25 +120,24 @@ impl Builder {
         self.body(rings.iter().flatten().copied().collect(), triangles);
     }
 
-    /// Polygons across a path, carried along it without twist. `side` is where the polygon's x points at first.
+    /// Cross-sections perpendicular to a path, in rotation-minimising frames. `side` is the initial direction of the
+    /// section's x.
     fn rings(path: &[V], side: V, section: impl Fn(usize) -> Vec<[f64; 2]>) -> (Vec<Vec<V>>, bool) {
         let (tangents, is_closed) = tangents(path);
-        let mut u = side;
-        let ring = |(i, &t): (usize, &V)| {
-            u = unit(across(u, t));
-            let v = cross(t, u);
+        let ring = |(i, [u, v]): (usize, [V; 2])| {
             section(i).iter().map(|&[x, y]| along(along(path[i], x, u), y, v)).collect()
         };
-        (tangents.iter().enumerate().map(ring).collect(), is_closed)
+        (frames(&tangents, side).into_iter().enumerate().map(ring).collect(), is_closed)
     }
 
-    /// A convex polygon carried along a path, with flat ends; a path that ends where it began closes.
+    /// Adds a convex polygon swept along a path, with flat ends. A path that ends at its first point gives a closed
+    /// sweep.
     pub(crate) fn sweep(&mut self, path: &[V], side: V, section: &[[f64; 2]]) {
         let (rings, is_closed) = Self::rings(path, side, |_| section.to_vec());
         self.loft(&rings, is_closed);
     }
 
-    /// A sweep whose polygon is scaled along the way.
+    /// Adds a sweep whose polygon is scaled by `size` of the position along the path, from 0 to 1.
     pub(crate) fn tapered(&mut self, path: &[V], side: V, section: &[[f64; 2]], size: impl Fn(f64) -> f64) {
         let last = (path.len() - 1) as f64;
         let scaled = |i| {
@@ -154,7 +148,7 @@ impl Builder {
         self.loft(&rings, is_closed);
     }
 
-    /// A round tube with round ends, or closed if its path is: capsules.
+    /// Adds a round tube with round ends, or a closed tube if the path is closed. Its parts are capsules.
     pub(crate) fn tube(&mut self, path: &[V], radius: f64) {
         let start = sub(path[1], path[0]);
         let side = if start[2].abs() < 0.7 * length(start) { Z } else { X };
@@ -186,8 +180,8 @@ impl Builder {
         self.parts.extend(path.windows(2).map(|p| Convex::Capsule(p[0], p[1], radius)));
     }
 
-    /// What an outline of (radius, z) makes about the z axis, filled up to the axis: a slice for each of its steps.
-    /// It may begin and end on the axis.
+    /// Adds the solid of revolution of an outline of (radius, z) about the z axis, with one hull per step of the
+    /// outline. The outline may begin and end on the axis.
     pub(crate) fn lathe(&mut self, outline: &[[f64; 2]]) {
         let count = corners_of(outline.iter().fold(0.0, |most, p| p[0].max(most)));
         let ring = |&[r, z]: &[f64; 2]| match r {
@@ -200,7 +194,7 @@ impl Builder {
         self.loft(&outline.iter().map(ring).collect::<Vec<_>>(), false);
     }
 
-    /// A ball, in slices.
+    /// Adds a ball, with hulls that are slices.
     pub(crate) fn ball(&mut self, centre: V, radius: f64) {
         let mut ball = Self::default();
         let mut outline: Vec<[f64; 2]> =
@@ -210,8 +204,8 @@ impl Builder {
         self.place(&ball, [X, Y, Z], centre);
     }
 
-    /// A wall about the z axis: between a pair of (radius, z) and the next, a convex quadrilateral revolved. The
-    /// first pair may lie on the axis.
+    /// Adds a hollow body of revolution about the z axis: each two consecutive pairs of (radius, z) span a convex
+    /// quadrilateral, which is revolved. The first pair may lie on the axis.
     pub(crate) fn revolve(&mut self, wall: &[[[f64; 2]; 2]]) {
         const COUNT: usize = 24;
         let at = |[r, z]: [f64; 2], i: usize| {
@@ -246,7 +240,7 @@ impl Builder {
         }
     }
 
-    /// A band in the x-y plane from `low` to `high` in z: between a pair of points and the next, a convex
+    /// Adds a band in the x-y plane, from `low` to `high` in z: each two consecutive pairs of points span a convex
     /// quadrilateral.
     pub(crate) fn strip(&mut self, pairs: &[[[f64; 2]; 2]], [low, high]: [f64; 2], is_closed: bool) {
         let ring = |&[a, b]: &[[f64; 2]; 2]| {
@@ -255,7 +249,7 @@ impl Builder {
         self.loft(&pairs.iter().map(ring).collect::<Vec<_>>(), is_closed);
     }
 
-    /// A flat ring about `centre` with elliptical edges.
+    /// Adds a flat ring about (x, y) with elliptical edges of half axes `inner` and `outer`.
     pub(crate) fn eye(&mut self, [x, y]: [f64; 2], inner: [f64; 2], outer: [f64; 2], z: [f64; 2]) {
         let pairs: Vec<_> = (0..24)
             .map(|i| turn(15.0 * i as f64))
@@ -264,13 +258,13 @@ impl Builder {
         self.strip(&pairs, z, true);
     }
 
-    /// A convex outline in the x-y plane, from `low` to `high` in z.
+    /// Adds a prism over a convex outline in the x-y plane, from `low` to `high` in z.
     pub(crate) fn prism(&mut self, outline: &[[f64; 2]], [low, high]: [f64; 2]) {
         let ring = |z: f64| outline.iter().map(|&[x, y]| [x, y, z]).collect::<Vec<V>>();
         self.loft(&[ring(low), ring(high)], false);
     }
 
-    /// A box.
+    /// Adds an axis-aligned box.
     pub(crate) fn cuboid(&mut self, low: V, high: V) {
         let ring = |z: f64| {
             vec![[low[0], low[1], z], [high[0], low[1], z], [high[0], high[1], z], [low[0], high[1], z]]

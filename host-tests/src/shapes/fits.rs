@@ -1,29 +1,29 @@
-//! Whether an object can hang on a supporter, marked from how the two were made.
+//! Whether an object can hang on a supporter, by the construction of both.
 
 use super::vector::{V, X, Y, Z, across, add, along, cross, dot, double, length, scale, sub, turn, unit};
 use super::{Bar, HangObject, Opening, OpeningKind, Support};
 use crate::solid::Solid;
 
-/// How much wider than the bar an opening must be, metres.
+/// Smallest play between an opening and a bar, in radius, m.
 const PLAY: f64 = 0.001;
-/// A bar this steep (sine of its tilt) only carries what is put over its end.
+/// Sine of the tilt above which a bar only carries a hollow over its end.
 const STEEP: f64 = 0.9;
-/// A bar must point up at least this much (sine) to hold a hollow.
+/// Smallest sine of the tilt of a bar that carries a hollow.
 const UPWARD: f64 = 0.35;
 
-/// Whether the object can hang on the supporter: some opening is wider than some bar by 1 mm of play, and there is
-/// room for it. It errs towards no. The rules, besides:
+/// Whether the object can hang on the supporter: some opening is wider than some bar by 1 mm of play, and the object
+/// has room there. Doubtful cases count as no. The further rules are:
 ///
-/// - a hole goes only over a free end, a hook over any bar;
-/// - a hole's or hook's widest bar is shortened by the cosine of the angle at which the bar crosses it when the object
-///   hangs straight down from it, and by that of the bar's tilt;
-/// - hung so, by its opening's middle at the outer end of the bar's usable length and with either face to the wall, no
-///   vertex of it is behind the wall's plane or below the stand's foot; it may lean on the wall by up to 20°; and the
-///   bar is long enough for the thickness of what lies on it;
-/// - beside a bar with a neighbour, what is not below the bar ends before the neighbour;
-/// - a hollow needs a bar that points up by 20° or more, reaches a quarter as deep as the hollow, and ends as far from
-///   the wall as half the hollow's radius;
-/// - a neck needs a gap that it passes and its head does not, by 4 mm on each side.
+/// - A hole needs a bar with a free end; a hook goes over any bar.
+/// - The clear radius of a hole or hook is reduced by the cosine of the angle between its axis and the bar when the
+///   object hangs straight down, and by the cosine of the bar's tilt.
+/// - The object hangs by the centre of its opening at the outer end of the bar's usable length, with either face to the
+///   wall. No vertex may be behind the wall's plane or below the stand's foot. The object may lean on the wall by up to
+///   20°. The bar must be long enough for the thickness of the part that lies on it.
+/// - If the bar has a neighbour, every part of the object that is not below the bar must end before the neighbour.
+/// - A hollow needs a bar that points up by 20° or more, is a quarter as long as the hollow is deep, and ends as far
+///   from the wall as half the radius of the hollow.
+/// - A neck needs a gap that is wider than the stem with its play, and narrower than the head by 4 mm on each side.
 pub fn fits(object: &HangObject, support: &Support) -> bool {
     let centroid = centroid(&object.solid);
     let pairs = object.openings.iter().flat_map(|o| support.bars.iter().map(move |b| (o, b)));
@@ -41,14 +41,15 @@ pub fn fits(object: &HangObject, support: &Support) -> bool {
     })
 }
 
-/// How far the object reaches from the opening against its axis.
+/// Extent of the object from the opening against the opening's axis, m.
 fn below(object: &HangObject, opening: &Opening) -> f64 {
     let (centre, axis) = (double(opening.centre), double(opening.axis));
     object.solid.vertices.iter().map(|&v| -dot(sub(double(v), centre), axis)).fold(0.0, f64::max)
 }
 
+/// Whether a hollow goes over the end of a bar.
 fn covers(object: &HangObject, opening: &Opening, bar: &Bar) -> bool {
-    // The axis points out of the hollow, so that its ground is where the object reaches furthest against it.
+    // The axis points out of the hollow, so the farthest point against it is the ground of the hollow.
     let depth = below(object, opening);
     bar.has_free_end
         && f64::from(bar.direction[2]) > UPWARD
@@ -60,16 +61,18 @@ fn covers(object: &HangObject, opening: &Opening, bar: &Bar) -> bool {
         })
 }
 
+/// Whether a hole or hook goes over a bar with room for the object.
 fn goes_over(object: &HangObject, opening: &Opening, centroid: V, bar: &Bar) -> bool {
     let direction = double(bar.direction);
     if direction[2].abs() > STEEP || (opening.kind == OpeningKind::Hole && !bar.has_free_end) {
         return false;
     }
-    // As it hangs: the centroid straight below the opening, the opening's axis along the bar as seen from above.
+    // In the hanging pose the centroid is straight below the opening, and the opening's axis is along the bar seen from
+    // above.
     let (centre, axis) = (double(opening.centre), double(opening.axis));
     let mut reach = sub(centroid, centre);
     if length(across(reach, axis)) < 1e-3 * f64::from(opening.clear_radius) {
-        // A ring hangs anyhow.
+        // The centroid is on the axis, as in a ring: any direction serves as down.
         reach = across(if axis[0].abs() < 0.7 { X } else { Y }, axis);
     }
     let down = unit(reach);
@@ -79,7 +82,7 @@ fn goes_over(object: &HangObject, opening: &Opening, centroid: V, bar: &Bar) -> 
     }
     let (ahead, aside) = (unit(ahead), cross(unit(ahead), down));
     FACES_AND_LEANS.into_iter().any(|(face, lean)| {
-        // The bar's way out is the object's `out`; leaning, its lower end is further out.
+        // The bar leaves the wall along the object's `out`. Leaning moves the lower end of the object outwards.
         let [cos, sin] = turn(lean);
         let out = scale(ahead, face);
         let hung =
@@ -88,12 +91,12 @@ fn goes_over(object: &HangObject, opening: &Opening, centroid: V, bar: &Bar) -> 
     })
 }
 
-/// Which side of the object is at the wall, and by how many degrees it leans on it.
+/// Sign of the face that is towards the wall, and angle by which the object leans, degrees.
 const FACES_AND_LEANS: [(f64, f64); 6] =
     [(1.0, 0.0), (-1.0, 0.0), (1.0, 10.0), (-1.0, 10.0), (1.0, 20.0), (-1.0, 20.0)];
 
-/// Whether the object, hung with these directions of its own out from the wall, aside and down, is wide enough for the
-/// bar and touches neither wall nor foot.
+/// Whether the opening is wide enough for the bar and the object touches neither wall nor foot. The object hangs with
+/// the given object directions pointing out from the wall, aside and down.
 fn has_room(object: &HangObject, opening: &Opening, [out, aside, down]: [V; 3], bar: &Bar) -> bool {
     let (centre, axis, direction) = (double(opening.centre), double(opening.axis), double(bar.direction));
     let level = length([direction[0], direction[1], 0.0]);
@@ -102,7 +105,7 @@ fn has_room(object: &HangObject, opening: &Opening, [out, aside, down]: [V; 3], 
         return false;
     }
     let vertices = || object.solid.vertices.iter().map(|&v| sub(double(v), centre));
-    // What lies on the bar is what is near the top of the opening, but not a bag's other loop.
+    // The part near the top of the opening lies on the bar, without a bag's other loop.
     let near = 1.3 * f64::from(opening.clear_radius) + 0.003;
     let thickness = vertices()
         .filter(|&v| length(across(v, axis)) < near && dot(v, down) < 0.0)
@@ -127,7 +130,7 @@ fn has_room(object: &HangObject, opening: &Opening, [out, aside, down]: [V; 3], 
     })
 }
 
-/// The middle of the volume; where bodies overlap it counts twice.
+/// Centroid of the volume. Overlapping bodies count twice.
 fn centroid(solid: &Solid) -> V {
     let mut sum = ([0.0; 3], 0.0);
     for t in &solid.triangles {

@@ -1,9 +1,9 @@
-//! Objects and supporters of many kinds, each made anew from a seed, with sizes as they vary in life.
+//! Objects and supporters of many kinds, generated from a seed with realistic sizes.
 //!
-//! All are closed surfaces with the convex parts that fill them, in metres. An object's frame is its own. A supporter
-//! stands with z up; one on a wall has its plate's front at x = 0 and points towards +x.
+//! All are closed surfaces with convex parts that fill them, in metres. An object has its own frame. A supporter has z
+//! up; on a wall, the front of its plate is at x = 0 and it points towards +x.
 //!
-//! What fits on what is marked from how the shapes were made, not by anything that predicts: see [`fits`].
+//! Whether an object fits on a supporter follows from their construction, independent of any predictor: see [`fits`].
 
 mod builder;
 mod fits;
@@ -12,7 +12,7 @@ mod openings;
 mod random;
 mod sections;
 mod supporters;
-mod vector;
+pub mod vector;
 
 pub use fits::fits;
 pub use objects::OBJECTS;
@@ -23,15 +23,15 @@ use crate::solid::Solid;
 
 /// A kind of object.
 pub struct ObjectKind {
-    /// What it is called.
+    /// Name in the tables.
     pub name: &'static str,
-    /// Whether it has anything to hang by.
+    /// Whether objects of this kind can hang on some supporter.
     pub is_hangable: bool,
     make: fn(&mut Random) -> HangObject,
 }
 
 impl ObjectKind {
-    /// The one that this seed names: the same on every machine.
+    /// Generates the shape of this seed, with the same bits on every machine.
     pub fn make(&self, seed: u64) -> HangObject {
         (self.make)(&mut Random::named(self.name, seed))
     }
@@ -39,89 +39,89 @@ impl ObjectKind {
 
 /// A kind of supporter.
 pub struct SupporterKind {
-    /// What it is called.
+    /// Name in the tables.
     pub name: &'static str,
     make: fn(&mut Random) -> Support,
 }
 
 impl SupporterKind {
-    /// The one that this seed names: the same on every machine.
+    /// Generates the shape of this seed, with the same bits on every machine.
     pub fn make(&self, seed: u64) -> Support {
         (self.make)(&mut Random::named(self.name, seed))
     }
 }
 
-/// An object, and by what it can hang.
+/// An object and the openings by which it can hang.
 #[derive(Clone, Debug)]
 pub struct HangObject {
     /// Its shape.
     pub solid: Solid,
-    /// Every way to hang it that it was made with; none if it is unhangable.
+    /// All openings by construction; empty if the object is unhangable.
     pub openings: Vec<Opening>,
 }
 
-/// How an opening holds.
+/// How an opening holds the object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OpeningKind {
-    /// Closed all around: a bar's free end must go through.
+    /// Closed all around, so that the free end of a bar must go through.
     Hole,
-    /// Open on one side: it also goes over a bar that has no free end.
+    /// Open on one side, so that it also goes over a bar without a free end.
     Hook,
     /// A hollow, open below, that goes over the end of a bar that points up. The axis points out of the hollow.
     Rim,
-    /// A stem that hangs between two bars by the wider head above it. The axis points from the stem to the head.
+    /// A stem between two bars, held by the wider head above it. The axis points from the stem to the head.
     Neck {
-        /// The head's radius.
+        /// Radius of the head, m.
         head_radius: f32,
     },
 }
 
-/// A place to hang an object by, in object coordinates.
+/// An opening by which an object can hang, in object coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct Opening {
-    /// How it holds.
+    /// How it holds the object.
     pub kind: OpeningKind,
-    /// The middle of the widest bar that it passes.
+    /// Centre of the widest bar that passes the opening.
     pub centre: [f32; 3],
     /// Unit vector along that bar.
     pub axis: [f32; 3],
-    /// The radius of that bar, which is straight and reaches at least 5 mm to both sides; for a
-    /// [`OpeningKind::Neck`] the stem's radius. Metres.
+    /// Radius of that bar, m. The bar is straight and extends at least 5 mm to both sides. For a [`OpeningKind::Neck`],
+    /// the radius of the stem.
     pub clear_radius: f32,
 }
 
-/// A supporter, and what it offers to hang on.
+/// A supporter and its bars.
 #[derive(Clone, Debug)]
 pub struct Support {
-    /// Its shape, with its plate or stand.
+    /// Its shape, including the plate or stand.
     pub solid: Solid,
-    /// Every part that something can hang on.
+    /// All parts on which an object can hang.
     pub bars: Vec<Bar>,
 }
 
-/// A part of a supporter that something can hang on, in its coordinates.
+/// A part of a supporter on which an object can hang, in supporter coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct Bar {
-    /// Where its usable part begins, on its centre line.
+    /// Start of the usable part on the centre line.
     pub position: [f32; 3],
-    /// Unit vector along it, towards its free end if it has one.
+    /// Unit vector along the bar, towards the free end if there is one.
     pub direction: [f32; 3],
-    /// Length of its usable part, metres.
+    /// Length of the usable part, m.
     pub length: f32,
-    /// Its own radius, metres.
+    /// Radius of the bar, m.
     pub radius: f32,
-    /// The radius that an opening must pass on the way to it, as of a ball at its end; at least `radius`,
-    /// and infinite where nothing goes around it, but it holds a [`OpeningKind::Neck`].
+    /// Radius that an opening must pass on the way to the bar, such as that of a ball at its end, m. At least `radius`;
+    /// infinite if no opening can enclose the bar, which can then only hold a [`OpeningKind::Neck`].
     pub pass_radius: f32,
-    /// How far `direction` points above the horizon, radians.
+    /// Elevation of `direction` above the horizontal, rad.
     pub tilt: f32,
-    /// Whether a hole can be put over its end.
+    /// Whether a hole can pass over the end.
     pub has_free_end: bool,
-    /// Horizontal unit vector away from the wall or post that it is fixed to, and how far `position` is from there
-    /// in metres. None where nothing is in the way.
+    /// Horizontal unit vector away from the wall or post that holds the bar, and the distance of `position` from it, m.
+    /// `None` if nothing is in the way.
     pub wall: Option<([f32; 3], f32)>,
-    /// Free height below `position`, metres; infinite on a wall.
+    /// Free height below `position`, m; infinite on a wall.
     pub drop: f32,
-    /// Width of the free gap to the bar beside it at the same height, metres; 0 if there is none.
+    /// Width of the gap to a neighbouring bar at the same height, m; 0 without a neighbour.
     pub gap: f32,
 }

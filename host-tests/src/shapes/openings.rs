@@ -1,25 +1,25 @@
-//! Openings, their width measured on the surface that was built.
+//! Openings, with widths measured on the generated surface.
 
 use super::builder::Builder;
 use super::vector::{V, X, Y, across, add, along, cross, dot, double, length, scale, single, sub, unit};
 use super::{HangObject, Opening, OpeningKind};
 use crate::solid::Solid;
 
-/// Half the length of the bar that a hole is measured with, unless it is wide across the bar.
+/// Half the length of the bar that measures a hole, unless a length is given, m.
 const HALF_LENGTH: f64 = 0.005;
 
 impl HangObject {
-    /// Without any opening yet.
+    /// An object without openings.
     pub(crate) fn new(builder: &Builder) -> Self {
         Self { solid: builder.finish(), openings: Vec::new() }
     }
 
-    /// With a hole that has `inside` inside; its middle is where the widest bar along `axis` passes.
+    /// Adds a hole that contains the point `inside`. Its centre is that of the widest bar along `axis`.
     pub(crate) fn hole(self, inside: V, axis: V) -> Self {
         self.hole_through(inside, axis, HALF_LENGTH)
     }
 
-    /// With a hole that a bar passes which reaches `half_length` to both sides of `inside`: a bail's, above a rim.
+    /// Adds a hole that is measured by a bar of half length `half_length`, such as the hole of a bail above a rim.
     pub(crate) fn hole_through(mut self, inside: V, axis: V, half_length: f64) -> Self {
         let axis = unit(axis);
         let near = Near::new(&self.solid, inside, axis, half_length);
@@ -43,7 +43,7 @@ impl HangObject {
         self
     }
 
-    /// With a hook about `centre`, whose mouth lets nothing wider than `mouth` in.
+    /// Adds a hook about `centre` with a mouth of width `mouth`.
     pub(crate) fn hook(mut self, centre: V, axis: V, mouth: f64) -> Self {
         let axis = unit(axis);
         let clear = Near::new(&self.solid, centre, axis, HALF_LENGTH).clearance(centre).min(mouth / 2.0);
@@ -51,20 +51,20 @@ impl HangObject {
         self
     }
 
-    /// With another kind of opening.
+    /// Adds an opening of any kind.
     pub(crate) fn push(&mut self, kind: OpeningKind, centre: V, axis: V, clear_radius: f64) {
         let clear_radius = clear_radius as f32;
         self.openings.push(Opening { kind, centre: single(centre), axis: single(axis), clear_radius });
     }
 }
 
-/// The triangles that a bar about a place might touch.
+/// The triangles that a bar near a point may touch.
 struct Near {
     axis: V,
     half_length: f64,
-    /// How far from the centre it knows.
+    /// Distance from the centre up to which the triangles are complete.
     reach: f64,
-    /// Each with the middle and the radius of a ball around it.
+    /// Each triangle with the centre and the radius of a bounding ball.
     triangles: Vec<([V; 3], V, f64)>,
 }
 
@@ -76,14 +76,14 @@ impl Near {
         };
         let corners = solid.triangles.iter().map(|t| t.map(|v| double(solid.vertices[v as usize])));
         let mut near = Self { axis, half_length, reach: 0.0, triangles: corners.map(with_ball).collect() };
-        // A bar this far away is at most this much wider than the one at the centre.
+        // The clearance grows by at most the distance from the centre.
         near.reach = 3.0 * near.clearance(centre);
         let far = half_length + 2.4 * near.reach;
         near.triangles.retain(|(t, ..)| length(sub(centre, nearest(centre, t))) < far);
         near
     }
 
-    /// The radius of the widest bar about `centre`.
+    /// Radius of the widest bar about `centre`.
     fn clearance(&self, centre: V) -> f64 {
         let steps = if self.half_length > HALF_LENGTH { 8 } else { 2 };
         let at = |i: i32| along(centre, self.half_length * f64::from(i) / f64::from(steps), self.axis);

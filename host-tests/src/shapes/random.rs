@@ -1,15 +1,15 @@
-//! A small seeded generator: the same seed gives the same shapes on every machine.
+//! A seeded random number generator with the same numbers on every machine.
 
 /// SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
 pub struct Random(u64);
 
 impl Random {
-    /// Starts from a seed.
+    /// A generator with this seed.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// Starts from a seed and a name, so that things of one seed do not all come out alike.
+    /// A generator with this seed and name, so that different things of one seed differ.
     pub fn named(name: &str, seed: u64) -> Self {
         // FNV-1a.
         let hash = (name.bytes()).fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {

@@ -1,69 +1,85 @@
-//! Vectors and curves in double precision, the same on every machine.
+//! Vectors, curves and closed surfaces in double precision, with the same bits on every machine.
 
 use std::f64::consts::PI;
 
-/// x, y, z in metres.
-pub(crate) type V = [f64; 3];
+/// A point or vector: x, y, z in metres.
+pub type V = [f64; 3];
 
-pub(crate) const X: V = [1.0, 0.0, 0.0];
-pub(crate) const Y: V = [0.0, 1.0, 0.0];
-pub(crate) const Z: V = [0.0, 0.0, 1.0];
+/// Unit vector along x.
+pub const X: V = [1.0, 0.0, 0.0];
+/// Unit vector along y.
+pub const Y: V = [0.0, 1.0, 0.0];
+/// Unit vector along z.
+pub const Z: V = [0.0, 0.0, 1.0];
 
-pub(crate) fn add(a: V, b: V) -> V {
+/// The sum `a` + `b`.
+pub fn add(a: V, b: V) -> V {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-pub(crate) fn sub(a: V, b: V) -> V {
+/// The difference `a` - `b`.
+pub fn sub(a: V, b: V) -> V {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-pub(crate) fn scale(a: V, s: f64) -> V {
+/// The product `s` · `a`.
+pub fn scale(a: V, s: f64) -> V {
     a.map(|c| c * s)
 }
 
-pub(crate) fn dot(a: V, b: V) -> f64 {
+/// The dot product.
+pub fn dot(a: V, b: V) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(crate) fn cross(a: V, b: V) -> V {
+/// The cross product `a` × `b`.
+pub fn cross(a: V, b: V) -> V {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-pub(crate) fn length(a: V) -> f64 {
+/// The Euclidean norm.
+pub fn length(a: V) -> f64 {
     dot(a, a).sqrt()
 }
 
-pub(crate) fn unit(a: V) -> V {
+/// The unit vector along `a`, which must not be zero.
+pub fn unit(a: V) -> V {
     scale(a, 1.0 / length(a))
 }
 
-/// `a` + `s` · `b`.
-pub(crate) fn along(a: V, s: f64, b: V) -> V {
+/// The sum `a` + `s` · `b`.
+pub fn along(a: V, s: f64, b: V) -> V {
     add(a, scale(b, s))
 }
 
-/// `a` without its part along the unit vector `n`.
-pub(crate) fn across(a: V, n: V) -> V {
+/// The component of `a` perpendicular to the unit vector `n`.
+pub fn across(a: V, n: V) -> V {
     along(a, -dot(a, n), n)
 }
 
-pub(crate) fn single(a: V) -> [f32; 3] {
+/// The vector rounded to single precision.
+pub fn single(a: V) -> [f32; 3] {
     a.map(|c| c as f32)
 }
 
-pub(crate) fn double(a: [f32; 3]) -> V {
+/// The vector in double precision.
+pub fn double(a: [f32; 3]) -> V {
     a.map(f64::from)
 }
 
-/// The cosine and the sine of an angle in degrees.
-pub(crate) fn turn(degrees: f64) -> [f64; 2] {
-    let radians = degrees * PI / 180.0;
+/// The cosine and the sine of an angle in radians.
+pub fn cos_sin(radians: f64) -> [f64; 2] {
     [libm::cos(radians), libm::sin(radians)]
 }
 
-/// Points on an arc about `centre`, from `from` to `to` degrees, where 0 is along `x` and 90 along `y`; both
-/// carry their radius.
-pub(crate) fn arc(centre: V, x: V, y: V, [from, to]: [f64; 2], steps: usize) -> Vec<V> {
+/// The cosine and the sine of an angle in degrees.
+pub fn turn(degrees: f64) -> [f64; 2] {
+    cos_sin(degrees * PI / 180.0)
+}
+
+/// `steps` + 1 points on an arc about `centre`, from `from` to `to` degrees. 0 is along `x` and 90 along `y`; the
+/// lengths of the two vectors are the arc's radii.
+pub fn arc(centre: V, x: V, y: V, [from, to]: [f64; 2], steps: usize) -> Vec<V> {
     (0..=steps)
         .map(|i| {
             let [cos, sin] = turn(from + (to - from) * i as f64 / steps as f64);
@@ -72,8 +88,8 @@ pub(crate) fn arc(centre: V, x: V, y: V, [from, to]: [f64; 2], steps: usize) -> 
         .collect()
 }
 
-/// Points on a cubic Bézier curve.
-pub(crate) fn bezier(controls: [V; 4], steps: usize) -> Vec<V> {
+/// `steps` + 1 points on a cubic Bézier curve.
+pub fn bezier(controls: [V; 4], steps: usize) -> Vec<V> {
     (0..=steps)
         .map(|i| {
             let t = i as f64 / steps as f64;
@@ -84,9 +100,9 @@ pub(crate) fn bezier(controls: [V; 4], steps: usize) -> Vec<V> {
         .collect()
 }
 
-/// A polygon with its corners rounded by arcs that begin `round` before each corner. A closed one ends where it
-/// began.
-pub(crate) fn rounded(corners: &[V], round: f64, is_closed: bool) -> Vec<V> {
+/// A polygon whose corners are rounded by curves that begin `round` metres before each corner. The path of a closed
+/// polygon ends at its first point.
+pub fn rounded(corners: &[V], round: f64, is_closed: bool) -> Vec<V> {
     let n = corners.len();
     let mut path = Vec::new();
     for (i, &corner) in corners.iter().enumerate() {
@@ -110,4 +126,27 @@ pub(crate) fn rounded(corners: &[V], round: f64, is_closed: bool) -> Vec<V> {
         path.push(path[0]);
     }
     path
+}
+
+/// Rotation-minimising frames of a path, one for each of its unit tangents: two unit vectors perpendicular to the
+/// tangent, the first and then the tangent × the first. The first frame is the one closest to `side`.
+pub fn frames(tangents: &[V], side: V) -> Vec<[V; 2]> {
+    let carried = |u: &mut V, &t: &V| {
+        *u = unit(across(*u, t));
+        Some([*u, cross(t, *u)])
+    };
+    tangents.iter().scan(side, carried).collect()
+}
+
+/// Reverses the triangles of a closed surface if it is inside out, so that they are counter-clockwise seen from
+/// outside.
+pub fn face_outwards(vertices: &[V], triangles: &mut [[usize; 3]]) {
+    let volume: f64 = triangles
+        .iter()
+        .map(|t| t.map(|i| sub(vertices[i], vertices[0])))
+        .map(|[a, b, c]| dot(a, cross(b, c)))
+        .sum();
+    if volume < 0.0 {
+        triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
 }

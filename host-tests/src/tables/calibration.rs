@@ -1,14 +1,14 @@
-//! Whether what was said to be probable came true.
+//! Reliability of the predicted probabilities.
 
-use super::report::wilson;
+use super::proportion::wilson;
 use super::row::{Outcome, Row, Said};
 use std::fmt::Write;
 
-/// Bounds of the bins: most poses are said to be likely.
+/// Bounds of the bins of probability, narrower where most poses are.
 const BINS: [f32; 8] = [0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.975, 1.0];
 
-/// The reliability of the probabilities of the best poses, as a table and a plot; nothing if there are none. The others are only
-/// dropped while none hangs, so they are no fair sample.
+/// Reliability of the probabilities of the best poses, as a table and a plot; empty without probabilities. Further
+/// poses are only simulated while none hangs, so they would be a biased sample.
 pub(super) fn table(rows: &[&Row]) -> String {
     let poses: Vec<(Said, bool)> = rows
         .iter()
@@ -19,7 +19,7 @@ pub(super) fn table(rows: &[&Row]) -> String {
         return String::new();
     }
     let mut text = String::from(
-        "The probability that each best pose was given, and what became of it:\n\n| said | poses | said, mean, % | hangs, % |\n|---|--:|--:|--:|\n",
+        "Predicted probability and success rate of the best poses:\n\n| predicted, % | poses | predicted mean, % | success, % |\n|---|--:|--:|--:|\n",
     );
     let (mut said_means, mut shares) = (Vec::new(), Vec::new());
     for bounds in BINS.windows(2) {
@@ -45,8 +45,8 @@ pub(super) fn table(rows: &[&Row]) -> String {
         poses.iter().map(|(said, hangs)| (said.probability - f32::from(u8::from(*hangs))).powi(2)).sum();
     let _ = writeln!(
         text,
-        "\nBrier score {:.3}.\n\n```mermaid\nxychart-beta\n  title \"Reliability: said (bars) and came true (line), %\"\n  \
-         x-axis \"said, mean of the bin, %\" [{}]\n  y-axis \"%\" 0 --> 100\n  bar [{}]\n  line [{}]\n```\n",
+        "\nBrier score {:.3}.\n\n```mermaid\nxychart-beta\n  title \"Reliability: predicted (bars) and observed (line), %\"\n  \
+         x-axis \"predicted mean of the bin, %\" [{}]\n  y-axis \"%\" 0 --> 100\n  bar [{}]\n  line [{}]\n```\n",
         brier / poses.len() as f32,
         said_means.join(", "),
         said_means.join(", "),

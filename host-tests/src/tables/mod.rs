@@ -1,7 +1,8 @@
-//! Predicts poses for many pairs, drops them, and says in tables what became of them.
+//! Predicts poses for many pairs, simulates their release, and tabulates the outcomes.
 
 mod calibration;
 pub mod case;
+pub mod proportion;
 pub mod real;
 pub mod report;
 pub mod row;

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What the tables need of an entry of the manifest.
+/// The fields of an entry of the manifest that the tables need.
 #[derive(Deserialize)]
 struct Entry {
     file: String,
@@ -19,14 +19,15 @@ struct Entry {
     up_axis: String,
 }
 
-/// A mesh that was read and made a shell.
+/// A mesh converted to a shell.
 struct Loaded {
     name: String,
     category: String,
     solid: Arc<Solid>,
 }
 
-/// Every object on every supporter, at most `pairs` that may hang, evenly over the list, and those that cannot.
+/// Pairs of every object with every supporter: at most `pairs` that may hang, spread evenly over the list, and at most
+/// half as many that cannot.
 pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
     let path = folder.join("manifest.json");
     let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
@@ -62,7 +63,7 @@ pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
     Ok(cases)
 }
 
-/// The mesh in metres with z up, as a shell.
+/// Reads a mesh, converts it to metres with z up, and makes its shell.
 fn solid(folder: &Path, entry: &Entry) -> Result<Loaded> {
     let mesh = read_mesh(&folder.join(&entry.file))?;
     let turn = |[x, y, z]: [f32; 3]| match entry.up_axis.as_str() {

@@ -1,38 +1,22 @@
-//! The tables, as Markdown.
+//! Tables of the outcomes in Markdown.
 
 use super::calibration;
+use super::proportion::wilson;
 use super::row::{Failure, Outcome, Row};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// `successes` of `trials` in percent, with the 95 % interval of Wilson (1927).
-pub fn wilson(successes: usize, trials: usize) -> String {
-    if trials == 0 {
-        return "–".into();
-    }
-    let [low, high] = wilson_interval(successes, trials).map(|p| 100.0 * p);
-    format!("{:.0} ({low:.0}–{high:.0})", 100.0 * successes as f64 / trials as f64)
-}
-
-fn wilson_interval(successes: usize, trials: usize) -> [f64; 2] {
-    let z = 1.959_964;
-    let (n, p) = (trials as f64, successes as f64 / trials as f64);
-    let middle = p + z * z / (2.0 * n);
-    let reach = z * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
-    [middle - reach, middle + reach].map(|bound| (bound / (1.0 + z * z / n)).clamp(0.0, 1.0))
-}
-
-/// What the tables are and which command printed them.
+/// The heading and an explanation of the terms.
 pub fn heading(rows: &[Row]) -> String {
     format!(
-        "# Results\n\nPrinted by `make tables`; {} rows of made pairs. Success, robust and the other words are those of the \
-         definition of hanging in `host-tests/src/judge/verdict.rs`: percent, with Wilson's 95 % interval. \"Top 5\" and \
-         \"top 10\" ask whether any of so many poses hangs. All judgements are Bullet's unless ODE is named.\n\n",
+        "# Results\n\nPrinted by `make tables` from {} rows of generated pairs. `host-tests/src/judge/verdict.rs` defines success, \
+         robust and the other terms. All rates are in percent, with the 95 % interval of Wilson. \"Top 5\" and \"top 10\" are the \
+         rates at which at least one of the best 5 or 10 poses hangs. All verdicts are by Bullet unless ODE is named.\n\n",
         rows.len()
     )
 }
 
-/// The profiles side by side.
+/// A table that compares the profiles.
 pub fn summary(rows: &[Row]) -> String {
     let mut profiles: Vec<&str> = rows.iter().map(|row| row.profile.as_str()).collect();
     profiles.dedup();
@@ -61,7 +45,7 @@ pub fn summary(rows: &[Row]) -> String {
             let hang = doubtful.iter().filter(|row| row.first().is_some_and(Outcome::success)).count();
             let _ = writeln!(
                 notes,
-                "For {} more pairs a search by trial and error found no pose that hangs; of `{profile}`'s best poses {hang} do.\n",
+                "For {} more pairs a random search found no pose that hangs; {hang} of the best poses of `{profile}` do.\n",
                 doubtful.len(),
             );
         }
@@ -69,7 +53,7 @@ pub fn summary(rows: &[Row]) -> String {
     text + "\n" + &notes
 }
 
-/// The pairs that fit, those that may, and those that cannot hang.
+/// Splits the rows into pairs that fit, pairs that may fit, and pairs that cannot hang.
 fn by_fit<'r>(rows: &[&'r Row]) -> [Vec<&'r Row>; 3] {
     let of = |fits, doubtful| {
         let rows = rows.iter().filter(|row| row.fits == fits && row.doubtful == doubtful);
@@ -78,7 +62,7 @@ fn by_fit<'r>(rows: &[&'r Row]) -> [Vec<&'r Row>; 3] {
     [of(true, false), of(false, true), of(false, false)]
 }
 
-/// All tables for the rows of one kind of pairs, profile beside profile.
+/// All tables for one set of pairs.
 pub fn tables(title: &str, rows: &[Row]) -> String {
     let mut text = format!("## {title}\n\n{}", summary(rows));
     let mut profiles: Vec<&str> = rows.iter().map(|row| row.profile.as_str()).collect();
@@ -124,7 +108,7 @@ fn median_and_slowest(seconds: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     Some([*seconds.get(seconds.len() / 2)?, *seconds.last()?])
 }
 
-/// A line for each value of `key`, and one for all.
+/// A table with one line per value of `key` and one for all rows.
 fn by<'r>(name: &str, rows: &[&'r Row], key: impl Fn(&'r Row) -> &'r String) -> String {
     let mut groups: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
     for row in rows {
@@ -159,7 +143,7 @@ fn agreement(rows: &[&Row]) -> String {
     let ode = both.iter().filter(|(_, b)| b.success()).count();
     let bullet = both.iter().filter(|(a, _)| a.success()).count();
     format!(
-        "Of {} best poses judged by both engines Bullet and ODE agree on success in {} %; success in Bullet {} %, in ODE {} %.\n\n",
+        "Bullet and ODE both judged {} best poses and agree on {} % of them; success in Bullet {} %, in ODE {} %.\n\n",
         both.len(),
         wilson(agree, both.len()),
         wilson(bullet, both.len()),
@@ -167,7 +151,7 @@ fn agreement(rows: &[&Row]) -> String {
     )
 }
 
-/// Why best poses failed, and the commonest pairs of kinds for which they did.
+/// Tables of the causes of failure of best poses and of the pairs of kinds with most failures.
 fn failures(rows: &[&Row]) -> String {
     let mut causes: BTreeMap<Failure, usize> = BTreeMap::new();
     let mut places: BTreeMap<(Failure, &str, &str), usize> = BTreeMap::new();
@@ -177,34 +161,16 @@ fn failures(rows: &[&Row]) -> String {
             *places.entry((cause, &row.object, &row.supporter)).or_default() += 1;
         }
     }
-    let mut text = String::from("| cause of failure | pairs | what would mend it |\n|---|--:|---|\n");
+    let mut text = String::from("| cause of failure | pairs | possible remedy |\n|---|--:|---|\n");
     for (cause, count) in &causes {
         let _ = writeln!(text, "| {} | {count} | {} |", cause.name(), cause.remedy());
     }
     let mut places: Vec<_> = places.into_iter().collect();
     places.sort_by_key(|(place, count)| (std::cmp::Reverse(*count), *place));
-    text += "\nThe twenty commonest failures:\n\n| cause | object | supporter | pairs |\n|---|---|---|--:|\n";
+    text +=
+        "\nThe twenty most frequent failures:\n\n| cause | object | supporter | pairs |\n|---|---|---|--:|\n";
     for ((cause, object, supporter), count) in places.into_iter().take(20) {
         let _ = writeln!(text, "| {} | {object} | {supporter} | {count} |", cause.name());
     }
     text + "\n"
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn wilson_intervals_as_published() {
-        // Newcombe 1998, "Two-sided confidence intervals for the single proportion", table I, method 3.
-        for (successes, trials, low, high) in [
-            (81, 263, 0.2553, 0.3662),
-            (15, 148, 0.0624, 0.1605),
-            (0, 20, 0.0, 0.1611),
-            (1, 29, 0.0061, 0.1718),
-        ] {
-            let [l, h] = wilson_interval(successes, trials);
-            assert!((l - low).abs() < 1e-4 && (h - high).abs() < 1e-4, "{successes}/{trials}: {l} {h}");
-        }
-    }
 }

@@ -1,15 +1,15 @@
-//! What became of one pair under one profile: a line of the record that a run writes and resumes from.
+//! Outcome of one pair under one profile, which is a line of the record that a run writes and resumes from.
 
 use crate::judge::Verdict;
 use hangpose::hanging::Rest;
 use serde::{Deserialize, Serialize};
 
-/// One pair under one profile.
+/// Outcome of one pair under one profile.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Row {
-    /// Names the pair; the same in every run with the same seed.
+    /// Name of the pair, the same in every run with the same seed.
     pub pair: String,
-    /// `paper` or `default`.
+    /// Name of the profile, such as `paper` or `default`.
     pub profile: String,
     /// Kind of the object.
     pub object: String,
@@ -17,63 +17,63 @@ pub struct Row {
     pub supporter: String,
     /// Whether the pair can hang, by geometry or because a search found a pose.
     pub fits: bool,
-    /// Whether it may yet hang though the search found no pose.
+    /// Whether the pair may hang although the search found no pose.
     #[serde(default)]
     pub doubtful: bool,
-    /// Why nothing was predicted, if nothing was.
+    /// Stage at which the prediction was rejected, if it was.
     pub rejection: Option<String>,
-    /// Seconds from the models' inputs to the poses, one thread.
+    /// Duration of analysis and prediction on one thread, s.
     pub seconds: f64,
-    /// What the judge says of the best poses, best first, up to the first that succeeds.
+    /// Outcomes of the best poses, best first, by default up to the first success.
     pub outcomes: Vec<Outcome>,
-    /// What a second judge says of the best pose, if it was asked.
+    /// Outcome of the best pose in the second engine, if there is one.
     pub second: Option<Outcome>,
 }
 
-/// What a judge says of one pose.
+/// Outcome of one pose.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Outcome {
-    /// Nothing deeper than 2 mm inside at the release.
+    /// The penetration depth at release is at most 2 mm.
     pub clear: bool,
-    /// It stays.
+    /// The object stays on the supporter.
     pub holds: bool,
-    /// It falls when gravity is reversed.
+    /// The object comes free under reversed gravity.
     pub honest: bool,
-    /// It stays when gravity is tilted.
+    /// The object stays under tilted gravity.
     pub robust: bool,
-    /// Deepest penetration at the release, metres.
+    /// Largest penetration depth at release, m.
     pub penetration: f32,
-    /// How far the centre of mass sank, metres.
+    /// Sinking of the centre of mass, m.
     pub sank: f32,
-    /// How far the object turned, radians.
+    /// Rotation angle of the object, rad.
     pub turned: f32,
-    /// How long the judge took, seconds; 0 if the pose was not let go.
+    /// Duration of the judgement, s; 0 if the pose was not released.
     pub seconds: f64,
-    /// What the predictor said of it, if it let gravity act.
+    /// Statements of the predictor about the pose, if it simulated the release.
     #[serde(default)]
     pub said: Option<Said>,
 }
 
-/// What the predictor says of a pose.
+/// Statements of the predictor about a pose.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Said {
-    /// That it hangs.
+    /// Probability that the object hangs.
     pub probability: f32,
-    /// Radians, in each direction.
+    /// Tolerated tilt in each direction, rad.
     pub tilts: [f32; 8],
-    /// Seconds that it stays when jolted.
+    /// Duration for which it survives the jolt test, s.
     pub jolt_time: f32,
-    /// While gravity tilts, metres.
+    /// Sinking while gravity tilts, m.
     pub tilted_sinking: f32,
-    /// Metres per second.
+    /// Speed of a tolerated knock, m/s.
     pub knock_speed: f32,
-    /// The rise of an escape over the lever.
+    /// Rise of an escape divided by the lever.
     pub escape_ratio: f32,
-    /// At release, metres.
+    /// Clearance at release, m.
     pub clearance: f32,
-    /// From release to rest, metres.
+    /// Sinking from release to rest, m.
     pub sinking: f32,
-    /// How many.
+    /// Number of contacts at rest.
     pub contacts: usize,
 }
 
@@ -94,7 +94,7 @@ impl From<&Rest> for Said {
 }
 
 impl Outcome {
-    /// Of a pose that is not clear and was not let go.
+    /// Outcome of a pose that is not clear and was not released.
     pub fn unclear(penetration: f64) -> Self {
         Self {
             clear: false,
@@ -109,7 +109,7 @@ impl Outcome {
         }
     }
 
-    /// Of a verdict that took so many seconds.
+    /// Outcome of a verdict and the duration of its judgement in seconds.
     pub fn new(verdict: &Verdict, seconds: f64) -> Self {
         let Verdict { clear, holds, honest, robust, ref figures } = *verdict;
         Self {
@@ -125,12 +125,12 @@ impl Outcome {
         }
     }
 
-    /// DESIGN's success: clear, holds and honest.
+    /// Whether the pose is clear, holds and is honest, as in [`Verdict::success`].
     pub fn success(&self) -> bool {
         self.clear && self.holds && self.honest
     }
 
-    /// Why it failed, if it did.
+    /// Cause of the failure, if the pose failed.
     pub fn failure(&self) -> Option<Failure> {
         if !self.clear {
             Some(Failure::Penetration)
@@ -146,28 +146,28 @@ impl Outcome {
     }
 }
 
-/// An object that falls and has turned by more than this, radians, is said to have rotated off.
+/// Rotation above which an object that falls counts as rotated off, rad.
 const ROTATED_OFF: f32 = 0.7;
 
-/// Why the best pose of a pair that fits does not hang.
+/// Cause of the failure of a pair that fits.
 #[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
 pub enum Failure {
-    /// The object or the supporter has no place to hang by or on.
+    /// The object or the supporter has no contact candidate or site.
     NoSite,
-    /// There are places to hang by and on, but nothing stays of what was tried.
+    /// There are candidates, but no pose of them stays.
     NoMatch,
-    /// The pose runs through the supporter.
+    /// The object penetrates the supporter at the pose.
     Penetration,
-    /// It fell and kept its orientation.
+    /// The object fell and kept its orientation.
     SlidOff,
-    /// It fell and turned.
+    /// The object fell and rotated.
     RotatedOff,
-    /// It is stuck in the supporter.
+    /// The object is stuck in the supporter.
     Wedged,
 }
 
 impl Failure {
-    /// As the tables name it.
+    /// Name in the tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::NoSite => "no site",
@@ -179,21 +179,23 @@ impl Failure {
         }
     }
 
-    /// What would mend it.
+    /// Possible remedy.
     pub fn remedy(self) -> &'static str {
         match self {
-            Self::NoSite => "more candidates: smaller clusters of sites, contacts closer together, more yaws",
-            Self::NoMatch => "test the real section against the hole; more yaws; let more poses go",
-            Self::Penetration => "surface between the cloud's points: thin bars are seen at few of them",
-            Self::SlidOff => "a margin that sees how far a body slides before it leaves",
-            Self::RotatedOff => "a probability that weighs balances on one contact less",
+            Self::NoSite => "more candidates: smaller clusters of sites, denser contacts, more yaw angles",
+            Self::NoMatch => "compare the hole with the true cross-section; more yaw angles; more releases",
+            Self::Penetration => {
+                "reconstruct the surface between the cloud's points, which are sparse on thin bars"
+            }
+            Self::SlidOff => "a margin that includes the sliding distance to an escape",
+            Self::RotatedOff => "a lower probability for balances on one contact",
             Self::Wedged => "prefer openings with more play",
         }
     }
 }
 
 impl Row {
-    /// What the judge says of the best pose.
+    /// Outcome of the best pose.
     pub fn first(&self) -> Option<&Outcome> {
         self.outcomes.first()
     }
@@ -203,7 +205,7 @@ impl Row {
         self.outcomes.iter().take(count).any(Outcome::success)
     }
 
-    /// Why the best pose failed, if it did.
+    /// Cause of the failure of the best pose, if it failed.
     pub fn failure(&self) -> Option<Failure> {
         match (self.first(), self.rejection.as_deref()) {
             (Some(outcome), _) => outcome.failure(),

@@ -1,13 +1,12 @@
-//! Works through the cases on both cores, and writes each row as it comes.
+//! Evaluates the cases on several threads and writes each row when it is complete.
 
 use super::case::{Case, Fit};
 use super::row::{Failure, Outcome, Row};
 use super::search::finds_a_pose;
 use crate::gallery;
 use crate::judge::{Bullet, Judge, Limits, Ode, Scene, World};
-use hangpose::geometry::Mesh;
 use hangpose::hanging::HangingPose;
-use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses, sample_supporter};
+use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses};
 use std::collections::{HashMap, HashSet};
 use std::io::{BufRead, Write};
 use std::path::Path;
@@ -15,40 +14,38 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock};
 use std::time::Instant;
 
-/// Poses that are dropped at most, until one succeeds.
+/// Largest number of poses per pair that are predicted and judged.
 pub const TOP: usize = 10;
-/// Points that a supporter is seen as.
-const POINTS: usize = 10_000;
 
-/// Who judges.
+/// Engine that judges.
 #[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
 pub enum Engine {
     /// Bullet.
     Bullet,
     /// ODE.
     Ode,
-    /// Bullet, and ODE the best pose as well.
+    /// Bullet, and ODE for the best pose in addition.
     Both,
 }
 
-/// What a run is asked for.
+/// Options of a run.
 pub struct Options<'a> {
-    /// The constants to predict with, by name.
+    /// Names and constants of the profiles.
     pub profiles: &'a [(String, Params)],
-    /// Who judges.
+    /// Engine that judges.
     pub engine: Engine,
-    /// How many pairs at once.
+    /// Number of threads, each with one pair at a time.
     pub threads: usize,
-    /// Where each row goes as it comes; rows that are there are not made again.
+    /// File to which rows are appended. Rows that it already has are not computed again.
     pub record: &'a Path,
-    /// Whether poses after the first that succeeds are dropped too.
+    /// Whether poses after the first success are judged too.
     pub all: bool,
-    /// Where pictures of the best poses go.
+    /// Folder for pictures of the best poses.
     pub gallery: Option<&'a Path>,
 }
 
-/// Predicts and judges every case under every profile and returns the rows, those of the record included. `tell` is
-/// told how many are done, and of how many.
+/// Predicts and judges every case under every profile. Returns all rows, including those of the record. `tell` is
+/// called with the number of finished rows and the total.
 pub fn run(
     cases: &[Case],
     options: &Options,
@@ -58,7 +55,7 @@ pub fn run(
     let mut rows = read(record)?;
     let done: HashSet<(String, String)> = rows.iter().map(|r| (r.pair.clone(), r.profile.clone())).collect();
     let file = Mutex::new(std::fs::File::options().create(true).append(true).open(record)?);
-    // Each pair is searched once for all profiles.
+    // Each pair is searched only once for all profiles.
     let mut searched: HashMap<&str, OnceLock<bool>> =
         cases.iter().map(|case| (case.name.as_str(), OnceLock::new())).collect();
     for row in &rows {
@@ -100,7 +97,7 @@ pub fn run(
     Ok(rows)
 }
 
-/// The rows of a record; a last line that a kill cut short is left out.
+/// Reads the rows of a record and ignores a last line that an aborted run left incomplete.
 fn read(record: &Path) -> std::io::Result<Vec<Row>> {
     match std::fs::File::open(record) {
         Ok(file) => Ok(std::io::BufReader::new(file)
@@ -113,16 +110,10 @@ fn read(record: &Path) -> std::io::Result<Vec<Row>> {
     }
 }
 
-/// The supporter as it is seen: samples all over its surface.
-fn cloud_of(case: &Case) -> hangpose::files::CloudFile {
-    let mesh = Mesh::new(&case.supporter.vertices, &case.supporter.triangles).expect("shapes are valid");
-    sample_supporter(&mesh, POINTS, case.seed)
-}
-
 fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row {
-    let cloud = cloud_of(case);
+    let cloud = case.supporter_cloud();
     let params = Params { seed: case.seed, ..params.clone() };
-    let mesh = Mesh::new(&case.object.vertices, &case.object.triangles).expect("shapes are valid");
+    let mesh = case.object.mesh();
     let (mut object_memory, mut supporter_memory) = (Vec::new(), Vec::new());
     let monitor = Monitor::new();
     let start = Instant::now();
@@ -135,12 +126,12 @@ fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row 
         predict_poses(&object, &supporter, &params, &mut poses, &monitor).expect("the profile is valid");
     let seconds = start.elapsed().as_secs_f64();
 
-    // A pair that cannot hang is judged by whether anything is predicted at all.
+    // For a pair that cannot hang only the rejection counts.
     let poses = if case.fit == Fit::No { &[] } else { prediction.poses };
     let scene = Scene::new(&case.object, &case.supporter);
     let drop = |world: &mut World, pose: &HangingPose| {
         let start = Instant::now();
-        // What runs through the supporter has failed, and is slow to shake free.
+        // A penetrating pose has failed, and its simulation would be slow.
         world.release(&pose.pose.cast());
         let penetration = world.penetration();
         if penetration > Limits::DEFINITION.penetration {

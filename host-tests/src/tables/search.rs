@@ -1,6 +1,6 @@
-//! Whether an object can hang on a supporter at all, by trial and error: nothing is asked of the predictor.
+//! Random search for a pose in which an object hangs on a supporter, independent of the predictor.
 //!
-//! A pair fits if a pose is found that hangs. If none is, it may still fit.
+//! A pair fits if the search finds a pose that hangs. If it finds none, the pair may still fit.
 
 use crate::judge::{Bullet, Judge, Overlap, Scene};
 use crate::shapes::Random;
@@ -8,19 +8,21 @@ use crate::solid::Solid;
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use std::f64::consts::{PI, TAU};
 
-/// Poses that are let go at most, and that are tried at most, since most collide.
+/// Largest number of poses that are released.
 const DROPS: usize = 60;
+/// Largest number of random poses, most of which collide.
 const TRIES: usize = 5000;
-/// Points that are drawn of each surface; few of them face the right way.
+/// Number of samples of each surface, few of which have a suitable normal.
 const SAMPLES: usize = 20_000;
-/// How much a surface has to face the right way: the cosine of the angle.
+/// Smallest cosine of the angle between a suitable normal and the required direction.
 const FACING: f64 = 0.3;
-/// The object is let go this far above the supporter, metres.
+/// Smallest height of the object's point above the supporter's point at release, m.
 const LOWEST: f64 = 0.0015;
+/// Largest height of the object's point above the supporter's point at release, m.
 const HIGHEST: f64 = 0.006;
 
-/// Whether one of the poses hangs in which a random point of the object, whose side faces its centre of mass, is straight
-/// above that centre and closely above a random point of the supporter that faces upwards.
+/// Whether the search finds a pose that hangs. Each random pose places a point of the object whose normal faces the
+/// centre of mass straight above that centre, and slightly above a point of the supporter whose normal faces up.
 pub(super) fn finds_a_pose(object: &Solid, supporter: &Solid, seed: u64) -> bool {
     let scene = Scene { tilt: false, ..Scene::new(object, supporter) };
     let (mut world, overlap) = (Bullet::default().world(&scene), Overlap::new(&scene));
@@ -52,10 +54,10 @@ pub(super) fn finds_a_pose(object: &Solid, supporter: &Solid, seed: u64) -> bool
     poses.take(DROPS).any(|pose| world.judge(&scene, &pose.cast()).success())
 }
 
-/// Triangles to draw points from, evenly over their area.
+/// A surface for uniform sampling.
 struct Surface {
     triangles: Vec<[Vector3<f64>; 3]>,
-    /// The area up to and with each triangle.
+    /// Cumulative areas of the triangles.
     areas: Vec<f64>,
     is_closed: bool,
 }
@@ -71,7 +73,7 @@ impl Surface {
         Self { areas: areas.collect(), triangles, is_closed: solid.is_closed() }
     }
 
-    /// A point and the direction that its side faces; what is not closed has two sides.
+    /// A random point and its normal, with a random sign if the surface is not closed.
     fn sample(&self, random: &mut Random) -> (Vector3<f64>, Vector3<f64>) {
         let all = self.areas.last().copied().unwrap_or_default();
         let area = random.range(0.0, all);

@@ -1,4 +1,4 @@
-//! Simple solids, made by hand.
+//! Simple hand-made solids.
 
 use host_tests::solid::{Part, Solid};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
@@ -10,8 +10,8 @@ fn point(at: Vector3<f32>) -> Point {
     at.into()
 }
 
-/// Adds one body whose outline is rings of points, each ring counter-clockwise seen from where the next one is.
-/// Open tubes are capped by fans around their first and last ring's middle; closed ones meet themselves.
+/// Adds one body between rings of points, each counter-clockwise seen from the next one. The ends of open tubes are
+/// closed by fans around the centres of the first and last ring. In closed tubes the first ring follows the last.
 fn tube(solid: &mut Solid, rings: &[Vec<Vector3<f32>>], closed: bool) {
     let sides = rings[0].len() as u32;
     let first = solid.vertices.len() as u32;
@@ -73,7 +73,7 @@ pub(crate) fn add_box(solid: &mut Solid, pose: Isometry3<f32>, half_extents: Poi
     solid.parts.push(Part::Cuboid { centre: pose.translation.vector.into(), axes, half_extents });
 }
 
-/// A bent round bar through middles in the xz plane about the y axis, in hulls: all of a circle or a part of it.
+/// Adds a round bar along a circle or an arc in the xz plane. Its parts are hulls.
 pub(crate) fn add_arc(
     solid: &mut Solid,
     middle: Point,
@@ -125,7 +125,7 @@ pub(crate) fn ball(radius: f32) -> Solid {
     capsule([0.0; 3], [0.0; 3], radius)
 }
 
-/// Points from a wall at y = 0 towards +y, 4 mm thick to each side, a little upwards.
+/// A peg of radius 4 mm from a wall at y = 0 towards +y, tilted slightly upwards.
 pub(crate) fn peg() -> Solid {
     let mut solid = wall();
     add_capsule(&mut solid, [0.0; 3], [0.0, 0.1, 0.015], PEG);
@@ -138,9 +138,10 @@ fn wall() -> Solid {
     solid
 }
 
+/// Radius of the peg and of the hook's bar, m.
 pub(crate) const PEG: f32 = 0.004;
 
-/// A hook of capsules: out of a wall at y = 0, down and up again. Its trough is at y = 0.07, z = 0.
+/// A hook of capsules that leaves a wall at y = 0 and bends down and up again. Its lowest point is at y = 0.07, z = 0.
 pub(crate) fn hook() -> Solid {
     let mut solid = wall();
     let at = |degrees: f32| {
@@ -154,7 +155,7 @@ pub(crate) fn hook() -> Solid {
     solid
 }
 
-/// Much like the hook, but of hulls: an arc that stands in the yz plane.
+/// An arc of hulls in the yz plane, similar to the hook.
 pub(crate) fn hulls() -> Solid {
     let mut solid = Solid::default();
     add_arc(&mut solid, [0.0, 0.0, 0.0], 0.03, PEG, PI, TAU, 12);
@@ -169,7 +170,7 @@ pub(crate) fn hulls() -> Solid {
     solid
 }
 
-/// A mug that stands on z = 0 about the z axis, with its handle towards +x: 8 cm wide, 9 cm high, 41 hulls.
+/// A mug on z = 0 about the z axis with its handle towards +x: 8 cm wide, 9 cm high, 41 hulls.
 pub(crate) fn mug() -> Solid {
     let mut solid = Solid::default();
     let circle = |radius: f32, z: f32| {
@@ -198,7 +199,7 @@ pub(crate) fn mug() -> Solid {
     solid
 }
 
-/// A clothes hanger in the xz plane: a triangle of bars below a hook about the origin.
+/// A clothes hanger in the xz plane: a triangle of bars below a hook around the origin.
 pub(crate) fn hanger() -> Solid {
     let mut solid = Solid::default();
     let (left, right, top) = ([-0.15, 0.0, -0.15], [0.15, 0.0, -0.15], [0.0, 0.0, -0.07]);
@@ -209,7 +210,7 @@ pub(crate) fn hanger() -> Solid {
     solid
 }
 
-/// A pose: metres, and degrees about an axis.
+/// A pose from a position in metres and a rotation in degrees about an axis.
 pub(crate) fn pose(position: Point, axis: Vector3<f32>, degrees: f32) -> Isometry3<f32> {
     let turn = axis.try_normalize(1e-9).map_or(Vector3::zeros(), |axis| axis * (degrees / 180.0 * PI));
     Isometry3::from_parts(Translation3::from(position), UnitQuaternion::new(turn))

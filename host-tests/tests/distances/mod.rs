@@ -1,4 +1,4 @@
-//! Distances by the book, apart from what they check.
+//! Textbook distances, independent of the code under test.
 
 use host_tests::solid::Part;
 
@@ -20,16 +20,16 @@ fn length(a: V) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// A part as half spaces, or as what is within `radius` of a segment.
+/// A part as half-spaces, or as a capsule.
 pub(crate) enum Hull {
-    /// Unit normals and offsets of the faces, and the corners.
+    /// Unit normals and offsets of the faces.
     Faces(Vec<(V, f64)>),
-    /// A capsule.
+    /// Ends of the segment and radius of a capsule.
     Capsule(V, V, f64),
 }
 
 impl Hull {
-    /// The part in this form: of every three points, the plane that has all others on one side.
+    /// Converts a part. The faces of a hull are the planes through three points that have all others on one side.
     pub(crate) fn of(part: &Part) -> Self {
         match part {
             &Part::Capsule { from, to, radius } => {
@@ -71,7 +71,7 @@ impl Hull {
     }
 }
 
-/// Signed distance, negative inside; outside near an edge it may be less than the truth.
+/// Signed distance, negative inside. Outside near an edge it may be too small.
 pub(crate) fn distance_to_part(hull: &Hull, p: V) -> f64 {
     match hull {
         Hull::Faces(faces) => faces.iter().map(|&(n, d)| dot(n, p) - d).fold(f64::NEG_INFINITY, f64::max),
@@ -96,7 +96,7 @@ pub(crate) fn distance_to_triangle(p: V, &[a, b, c]: &[V; 3]) -> f64 {
     [(a, b), (b, c), (c, a)].iter().map(|&(a, b)| distance_to_segment(p, a, b)).fold(f64::INFINITY, f64::min)
 }
 
-/// How often the surface goes around a point (Van Oosterom and Strackee's solid angles).
+/// Winding number of the surface around a point, by the solid angles of Van Oosterom and Strackee.
 pub(crate) fn winding_number(triangles: &[[V; 3]], p: V) -> f64 {
     let angle = |t: &[V; 3]| {
         let [a, b, c] = t.map(|v| sub(v, p));

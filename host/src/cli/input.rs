@@ -1,4 +1,4 @@
-//! Makes an object or a supporter of what a file holds: units, axes, limits, and what a person should know about it.
+//! Turns a file's content into an object or a supporter: units, axes, limits, and notes for the user.
 
 use super::terminal::say;
 use super::{Axis, CloudArguments};
@@ -9,22 +9,22 @@ use hangpose::hanging::Supporter;
 use hangpose::{TooLarge, sample_supporter};
 use std::path::Path;
 
-/// How a file's coordinates become metres with z up.
+/// Transform from a file's coordinates to metres with z up.
 pub(super) struct Placement {
     pub(super) scale: f32,
     pub(super) up: Axis,
-    /// The name of the option that sets the scale, for those who have to be told.
+    /// Name of the option that sets the scale, for warnings.
     pub(super) scale_option: &'static str,
 }
 
 /// A shape in metres with z up.
 pub(super) struct Placed<T> {
     pub(super) shape: T,
-    /// What is odd about its size.
+    /// Warning about an implausible size.
     pub(super) scale_warning: Option<String>,
 }
 
-/// Places an object and says on standard error what is odd about it.
+/// Applies the placement to an object and prints notes and warnings to standard error.
 pub(super) fn object(path: &Path, mut mesh: MeshFile, placement: &Placement) -> Result<Placed<MeshFile>> {
     let at = || path.display().to_string();
     TooLarge::check_mesh(&mesh).with_context(at)?;
@@ -35,7 +35,7 @@ pub(super) fn object(path: &Path, mut mesh: MeshFile, placement: &Placement) -> 
     Ok(Placed { shape: mesh, scale_warning })
 }
 
-/// Places a supporter, samples it if it is a mesh, and says on standard error what is odd about it.
+/// Applies the placement to a supporter, samples it if it is a mesh, and prints notes and warnings to standard error.
 pub(super) fn supporter(
     path: &Path,
     file: SupporterFile,
@@ -67,7 +67,7 @@ pub(super) fn supporter(
     Ok(Placed { shape: cloud, scale_warning })
 }
 
-/// The points as the core takes them, and from where they were seen.
+/// The points as the core takes them, with the viewpoint if one is given.
 pub(super) fn seen<'a>(file: &'a CloudFile, arguments: &CloudArguments) -> Result<Cloud<'a>> {
     let cloud = file.cloud()?;
     match arguments.viewpoint {
@@ -76,23 +76,21 @@ pub(super) fn seen<'a>(file: &'a CloudFile, arguments: &CloudArguments) -> Resul
     }
 }
 
-/// Says what became of the normals of a cloud. That some were too long or short, the reader has said.
+/// Prints notes about the normals of a cloud. The reader has already reported those that were not of unit length.
 pub(super) fn tell_of_normals(path: &Path, supporter: &Supporter, arguments: &CloudArguments) {
     let (estimated, points) = (supporter.normals().estimated, supporter.points().points().len());
     let is_seen = arguments.viewpoint.is_some();
     let side = match (estimated == points, is_seen) {
         (true, true) => "and face the viewpoint",
-        (true, false) => {
-            "and their outside was guessed: say --viewpoint if it is known where the camera stood"
-        }
-        (false, _) => "and turned like those around them",
+        (true, false) => "and their signs are a guess: pass --viewpoint if the camera position is known",
+        (false, _) => "and oriented like the normals around them",
     };
     if estimated > 0 {
         let path = path.display();
         say(
             "note",
             format_args!(
-                "{path}: {estimated} of {points} normals were estimated from the neighbouring points {side}"
+                "{path}: {estimated} of {points} normals were estimated from neighbouring points {side}"
             ),
         );
     }
@@ -110,10 +108,10 @@ fn tell(path: &Path, notes: &[String], warning: &Option<String>) {
     }
 }
 
-/// Nothing that hangs on a hook, and no hook, is larger than this, in metres ...
-const TOO_LARGE: f32 = 5.0;
-/// ... or smaller than this.
-const TOO_SMALL: f32 = 0.005;
+/// Largest plausible extent of an object or supporter, m.
+pub(super) const TOO_LARGE: f32 = 5.0;
+/// Smallest plausible extent of an object or supporter, m.
+pub(super) const TOO_SMALL: f32 = 0.005;
 
 impl Placement {
     fn apply(&self, points: &mut [[f32; 3]]) {
@@ -122,10 +120,10 @@ impl Placement {
         }
     }
 
-    /// What the size says about the unit, if it is not one for a hand.
+    /// A warning that names the likely unit if the size is implausible.
     fn warn_of_size(&self, aabb: &Aabb, what: &str) -> Option<String> {
         let size = aabb.extents().max();
-        // From 40 to 100 it may be a basket in centimetres or a hook in millimetres.
+        // Between 40 and 100 it may be a basket in centimetres or a hook in millimetres.
         let (unit, factor) = match size {
             TOO_SMALL..=TOO_LARGE => return None,
             0.0..TOO_SMALL => ("kilometres", 1000.0),
@@ -135,15 +133,20 @@ impl Placement {
         };
         let (option, scale) = (self.scale_option, rounded(self.scale * factor));
         let advice = match (self.scale, unit) {
-            (1.0, "millimetres or centimetres") => format!("if it is in {unit}, say {option} 0.001 or 0.01"),
-            (1.0, _) => format!("if it is in {unit}, say {option} {scale}"),
-            (wrong, _) => format!("that is with {option} {wrong}: try {option} {scale}"),
+            (1.0, "millimetres or centimetres") => {
+                format!("if its unit is {unit}, pass {option} 0.001 or 0.01")
+            }
+            (1.0, _) => format!("if its unit is {unit}, pass {option} {scale}"),
+            (wrong, _) => format!("it was scaled with {option} {wrong}: try {option} {scale}"),
         };
-        Some(format!("the {what} is {} m large, which is no size for a hand; {advice}", rounded(size)))
+        Some(format!(
+            "the {what} is {} m large, but {TOO_SMALL} to {TOO_LARGE} m is plausible; {advice}",
+            rounded(size)
+        ))
     }
 }
 
-/// With three digits that count.
+/// Rounded to three significant digits.
 fn rounded(x: f32) -> f32 {
     format!("{x:.2e}").parse().unwrap_or(x)
 }
@@ -162,10 +165,10 @@ mod tests {
     fn odd_sizes_name_the_likely_unit() {
         let end = |size| warning(1.0, size).unwrap().split_once("; ").unwrap().1.to_string();
         assert_eq!(warning(1.0, 0.1), None);
-        assert_eq!(end(120.0), "if it is in millimetres, say --scale 0.001");
-        assert_eq!(end(12.0), "if it is in centimetres, say --scale 0.01");
-        assert_eq!(end(0.0001), "if it is in kilometres, say --scale 1000");
-        assert_eq!(end(77.0), "if it is in millimetres or centimetres, say --scale 0.001 or 0.01");
+        assert_eq!(end(120.0), "if its unit is millimetres, pass --scale 0.001");
+        assert_eq!(end(12.0), "if its unit is centimetres, pass --scale 0.01");
+        assert_eq!(end(0.0001), "if its unit is kilometres, pass --scale 1000");
+        assert_eq!(end(77.0), "if its unit is millimetres or centimetres, pass --scale 0.001 or 0.01");
         assert!(warning(1.0, 123.456).unwrap().starts_with("the mug is 123 m large"));
     }
 

@@ -1,6 +1,6 @@
 //! `hangpose inspect`.
 
-use super::input::{self, Placed, Placement};
+use super::input::{self, Placed, Placement, TOO_LARGE, TOO_SMALL};
 use super::json::{self, InspectedObject, InspectedSupporter};
 use super::{InspectArguments, Role, terminal};
 use anyhow::Result;
@@ -62,15 +62,15 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
         "centre of mass  {} mm, {}\n",
         millimetres(&object.centre_of_mass().coords),
         match params.centre_of_mass {
-            CentreOfMass::Given(_) => "as given",
-            CentreOfMass::Volume if mass.volume_centroid.is_some() => "of the volume",
-            _ => "the mean of the surface",
+            CentreOfMass::Given(_) => "given",
+            CentreOfMass::Volume if mass.volume_centroid.is_some() => "centroid of the volume",
+            _ => "mean of the surface samples",
         }
     );
     text += &match mass.volume {
         Some(volume) => format!("volume          {:.1} cm3\n", volume * 1e6),
-        // To the method a triangle that is turned the wrong way is a hole with a lid.
-        None => "volume          none: the mesh has gaps, or not all its triangles face outwards\n".into(),
+        // A triangle with the wrong winding leaves the surface open.
+        None => "volume          none: the mesh is open, or some of its triangles face inwards\n".into(),
     };
     text += &format!("area            {:.1} cm2\n", mass.area * 1e4);
     text += &match object.places() {
@@ -84,7 +84,7 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
         ),
     };
     if !object.contacts().is_empty() {
-        text += "place  position, mm               bar direction          caught over, mm\n";
+        text += "index  position, mm               bar direction        capture depth, mm\n";
     }
     for (index, contact) in object.contacts().iter().enumerate().take(SHOWN) {
         text += &format!(
@@ -139,7 +139,7 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
         return Ok(json::text(&inspected));
     }
     let mut text = format!(
-        "supporter, {} points, {} normals estimated, {} brought to unit length\n",
+        "supporter, {} points, {} normals estimated, {} renormalised\n",
         inspected.points, inspected.normals_estimated, inspected.normals_renormalised
     );
     text += &format!("size            {} mm\n", millimetres(&extents));
@@ -154,7 +154,7 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
         }
     };
     if !supporter.contacts().is_empty() {
-        text += "place  position, mm               stretches along\n";
+        text += "index  position, mm               bar direction\n";
     }
     for (index, contact) in supporter.contacts().iter().enumerate().take(SHOWN) {
         text += &format!(
@@ -178,19 +178,20 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
     Ok(text)
 }
 
-/// Places that are listed at most; the JSON has all.
+/// Maximum number of contact candidates that are listed; the JSON has all of them.
 const SHOWN: usize = 10;
 
 fn scale(warning: &Option<String>) -> String {
-    format!("scale           {}\n", warning.as_deref().unwrap_or("as expected of something for a hand"))
+    let plausible = || format!("plausible, between {TOO_SMALL} and {TOO_LARGE} m");
+    format!("scale           {}\n", warning.clone().unwrap_or_else(plausible))
 }
 
-/// Whether the mesh bounds a volume.
+/// Whether the mesh bounds a volume, in words.
 pub(super) fn closedness(mass: &MassProperties) -> &'static str {
     match (mass.is_closed, mass.is_inside_out) {
         (false, _) => "open",
         (true, false) => "closed",
-        (true, true) => "closed but inside out, taken the other way round",
+        (true, true) => "closed but inside out, so its triangles were reversed",
     }
 }
 

@@ -1,4 +1,4 @@
-//! The JSON that programs read. Lengths are metres, frames have z up.
+//! The JSON output. Lengths are in metres, frames have z up.
 
 use super::counts::{Counts, ObjectCounts, SupporterCounts};
 use hangpose::Params;
@@ -9,7 +9,7 @@ use hangpose::hanging::{HangingPose, Rejection, Stage};
 use hangpose::mechanics::{Contact, Margin};
 use serde::Serialize;
 
-/// Raised when a reader of the last schema could misunderstand the new one.
+/// Version of the schema, raised by every change that a reader of the last version could misread.
 pub(super) const SCHEMA: u32 = 2;
 
 #[derive(Serialize)]
@@ -30,20 +30,20 @@ pub(super) struct Pose<'a> {
     quaternion_xyzw: [f32; 4],
     /// The same as `pose`.
     release_pose: [f32; 16],
-    /// Where gravity takes it; absent, like all that follows from it, if it was not asked.
+    /// Pose in which the object comes to rest; null, like the fields up to `contacts`, without simulation.
     rest_pose: Option<[f32; 16]>,
     sinking: Option<f32>,
     clearance: Option<f32>,
     probability: Option<f32>,
     margin: Option<Margin>,
     contacts: Option<&'a [Contact]>,
-    /// Of the paper's matching; absent where poses come from contacts.
+    /// Cost of the published matching; null where poses come from contact candidates.
     cost: Option<Cost>,
     object_site: Option<Site<'a, HangingSite>>,
     supporter_site: Option<Site<'a, SupportSite>>,
 }
 
-/// A site with its place among the sites of the object or the supporter.
+/// A site with its index among the sites of the object or the supporter.
 #[derive(Serialize)]
 pub(super) struct Site<'a, T> {
     pub(super) index: usize,
@@ -73,7 +73,7 @@ pub(super) struct Seconds {
     pub(super) object: f64,
     pub(super) supporter: f64,
     pub(super) matching: f64,
-    /// From the files to the poses; less than the sum where parts ran side by side.
+    /// From the files to the poses; less than the sum of the stages that ran in parallel.
     pub(super) total: f64,
 }
 
@@ -90,7 +90,7 @@ pub(super) struct MemoryBytes {
     pub(super) prediction: usize,
 }
 
-/// What `inspect` says of an object.
+/// Output of `inspect` for an object.
 #[derive(Serialize)]
 pub(super) struct InspectedObject<'a> {
     pub(super) schema: u32,
@@ -99,7 +99,7 @@ pub(super) struct InspectedObject<'a> {
     pub(super) vertices: usize,
     pub(super) triangles: usize,
     pub(super) extents: [f32; 3],
-    /// What is odd about that size.
+    /// Warning about an implausible size.
     pub(super) scale_warning: Option<String>,
     pub(super) mass: MassProperties,
     pub(super) centre_of_mass: [f32; 3],
@@ -109,7 +109,7 @@ pub(super) struct InspectedObject<'a> {
     pub(super) seconds: f64,
 }
 
-/// What `inspect` says of a supporter.
+/// Output of `inspect` for a supporter.
 #[derive(Serialize)]
 pub(super) struct InspectedSupporter<'a> {
     pub(super) schema: u32,
@@ -117,7 +117,7 @@ pub(super) struct InspectedSupporter<'a> {
     pub(super) role: &'static str,
     pub(super) points: usize,
     pub(super) extents: [f32; 3],
-    /// What is odd about that size.
+    /// Warning about an implausible size.
     pub(super) scale_warning: Option<String>,
     pub(super) normals_estimated: usize,
     pub(super) normals_renormalised: usize,
@@ -163,7 +163,7 @@ fn site<T>(sites: &[T], index: u32) -> Site<'_, T> {
     Site { index: index as usize, site: &sites[index as usize] }
 }
 
-/// All sites, numbered.
+/// All sites with their indices.
 pub(super) fn sites<T>(sites: &[T]) -> Vec<Site<'_, T>> {
     sites.iter().enumerate().map(|(index, site)| Site { index, site }).collect()
 }
@@ -178,7 +178,7 @@ impl From<&Rejection> for Reason {
     }
 }
 
-/// As text with a line break at the end.
+/// The value as indented JSON with a trailing line break.
 pub(super) fn text(value: &impl Serialize) -> String {
     let mut text = serde_json::to_string_pretty(value).expect("every key is a string");
     text.push('\n');

@@ -1,4 +1,4 @@
-//! What the command `hangpose` understands, one file a task.
+//! The command line of `hangpose`, one file per subcommand.
 
 mod counts;
 mod input;
@@ -15,7 +15,7 @@ pub(crate) use terminal::say;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
-/// Where and how to hang an object on a supporter: no training, no GPU.
+/// Predict how to hang an object on a supporter, without training data and without a GPU.
 #[derive(Parser)]
 #[command(version, after_help = EXAMPLE)]
 pub(crate) struct Arguments {
@@ -27,16 +27,16 @@ const EXAMPLE: &str = "Example: hangpose predict --object samples/mug.obj --supp
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
-    /// Find poses in which an object hangs on a supporter, best first.
+    /// Predict poses in which an object hangs on a supporter, best first.
     ///
-    /// A pose maps the object's coordinates to the supporter's, both in metres with z up: after scale and up, if they
-    /// are given.
+    /// A pose maps object coordinates to supporter coordinates. Both frames are in metres with z up, after the options
+    /// for scale and up axis are applied.
     ///
-    /// Exit status: 0 poses were found, 3 nothing hangs (the JSON says why), 1 bad input, 2 bad usage.
+    /// Exit status: 0 poses were found, 3 nothing hangs (the JSON gives the reason), 1 bad input, 2 bad usage.
     Predict(PredictArguments),
-    /// Show what the method sees in one file: size, centre of mass, and where it can be hung or hung on.
+    /// Show the analysis of one file: size, centre of mass, and contact candidates or hanging sites.
     ///
-    /// Exit status: 0 the file was read, even if it has no site, 1 bad input, 2 bad usage.
+    /// Exit status: 0 the file was read, even if it has no candidates, 1 bad input, 2 bad usage.
     Inspect(InspectArguments),
 }
 
@@ -50,28 +50,28 @@ pub(crate) struct PredictArguments {
     supporter: PathBuf,
     #[command(flatten)]
     method: MethodArguments,
-    /// How many poses to give.
+    /// Maximum number of poses.
     #[arg(long, value_name = "K", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     top: u32,
-    /// The object's centre of mass, in metres in the object's frame (after scale and up).
+    /// Centre of mass of the object, in metres in the object frame (after scale and up axis).
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, allow_hyphen_values = true)]
     com: Option<[f32; 3]>,
-    /// Where the result goes as JSON; - is standard output, instead of the table.
+    /// File for the result as JSON; - prints the JSON to standard output instead of the table.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-    /// 1: object and supporter are analysed one after the other; 2 or more: side by side.
+    /// 1 analyses object and supporter one after the other, 2 or more in parallel.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     threads: u32,
-    /// What the object's coordinates are multiplied by to be metres (0.001 for millimetres).
+    /// Factor from the units of the object's file to metres (0.001 for millimetres).
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_scale)]
     object_scale: f32,
-    /// The same for the supporter.
+    /// Factor from the units of the supporter's file to metres.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_scale)]
     supporter_scale: f32,
-    /// The axis of the object's file that becomes z: x, y, z, -x, -y or -z.
+    /// Axis of the object's file that becomes z: x, y, z, -x, -y or -z.
     #[arg(long, value_name = "AXIS", default_value = "z", value_parser = Axis::parse, allow_hyphen_values = true)]
     object_up: Axis,
-    /// The axis of the supporter's file that points up and becomes z.
+    /// Axis of the supporter's file that points up and becomes z.
     #[arg(long, value_name = "AXIS", default_value = "z", value_parser = Axis::parse, allow_hyphen_values = true)]
     supporter_up: Axis,
     #[command(flatten)]
@@ -83,7 +83,7 @@ pub(crate) struct InspectArguments {
     /// A mesh or a point cloud.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// What to take it for; by default a mesh is an object and a cloud a supporter.
+    /// Role of the file; by default a mesh is an object and a cloud a supporter.
     #[arg(long = "as", value_name = "ROLE")]
     role: Option<Role>,
     #[command(flatten)]
@@ -91,10 +91,10 @@ pub(crate) struct InspectArguments {
     /// Print JSON instead of text.
     #[arg(long)]
     json: bool,
-    /// What the coordinates are multiplied by to be metres.
+    /// Factor from the units of the file to metres.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_scale)]
     scale: f32,
-    /// The axis that points up and becomes z: x, y, z, -x, -y or -z.
+    /// Axis of the file that points up and becomes z: x, y, z, -x, -y or -z.
     #[arg(long, value_name = "AXIS", default_value = "z", value_parser = Axis::parse, allow_hyphen_values = true)]
     up: Axis,
     #[command(flatten)]
@@ -104,25 +104,25 @@ pub(crate) struct InspectArguments {
 /// The constants of the method.
 #[derive(Args)]
 struct MethodArguments {
-    /// The method as published, or ours.
+    /// Profile of constants: the published method, or the default, which also simulates the release of poses.
     #[arg(long, value_enum, default_value_t = Profile::Default)]
     profile: Profile,
-    /// Constants that differ from the profile's, as TOML: `radius_ratio = 0.9`.
+    /// TOML file of constants that override the profile's, as in `radius_ratio = 0.9`.
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
-    /// Seed of the samples; without it the params file's or 0.
+    /// Seed of the samples; the default is the seed of the params file, or 0.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
 }
 
-/// How a supporter becomes a cloud with normals.
+/// Options for the supporter's point cloud and normals.
 #[derive(Args)]
 struct CloudArguments {
-    /// How many points a supporter that is a mesh is sampled to.
+    /// Number of points that a supporter mesh is sampled to.
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(100..=500_000))]
     supporter_points: u32,
-    /// Where the camera stood that saw a cloud without normals, in metres in the supporter's frame (after scale and
-    /// up).
+    /// Camera position that orients the normals of a cloud without normals, in metres in the supporter frame (after
+    /// scale and up axis).
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, allow_hyphen_values = true)]
     viewpoint: Option<[f32; 3]>,
 }
@@ -139,7 +139,7 @@ enum Role {
     Supporter,
 }
 
-/// The axis of a file that becomes z.
+/// Axis of a file that becomes z.
 #[derive(Clone, Copy)]
 enum Axis {
     X,
@@ -163,7 +163,7 @@ impl Axis {
         })
     }
 
-    /// Turns coordinates by the least angle that makes this axis z.
+    /// Rotates coordinates by the smallest angle that maps this axis to z.
     fn turn(self, [x, y, z]: [f32; 3]) -> [f32; 3] {
         match self {
             Self::X => [-z, y, x],
@@ -180,14 +180,14 @@ fn parse_point(text: &str) -> Result<[f32; 3], String> {
     let numbers: Result<Vec<f32>, _> = text.split(',').map(|part| part.trim().parse()).collect();
     match numbers.map(<[f32; 3]>::try_from) {
         Ok(Ok(point)) if point.iter().all(|x| x.is_finite()) => Ok(point),
-        _ => Err("use three numbers with commas between them, as in 0.01,0,-0.2".into()),
+        _ => Err("use three comma-separated numbers, as in 0.01,0,-0.2".into()),
     }
 }
 
 fn parse_scale(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(scale) if scale.is_finite() && scale > 0.0 => Ok(scale),
-        _ => Err("use a number above zero, as in 0.001".into()),
+        _ => Err("use a positive number, as in 0.001".into()),
     }
 }
 

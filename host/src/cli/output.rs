@@ -1,4 +1,4 @@
-//! Where a result goes: found to be writable before the work begins, and written in one piece at the end.
+//! Destination of a result. It is checked to be writable before the computation and written in one step at the end.
 
 use super::terminal;
 use anyhow::{Context, Result, anyhow, ensure};
@@ -7,25 +7,24 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// A place for a text.
+/// Destination of a text.
 pub(super) enum Output {
     /// Standard output.
     Standard,
-    /// A file that appears, or is replaced, when it is complete.
+    /// A regular file, created or replaced atomically.
     File(PathBuf),
-    /// Something that is no file, such as a pipe, and is written to as it is.
+    /// A pipe or device, written to directly.
     Stream { stream: File, path: PathBuf },
 }
 
 impl Output {
-    /// Makes sure that `path` can be written and is none of `inputs`, without changing what is there; `-` is
-    /// standard output.
+    /// Checks that `path` can be written and is none of `inputs`, without changing it. `-` is standard output.
     pub(super) fn prepare(path: &Path, inputs: &[&Path]) -> Result<Self> {
         if path == Path::new("-") {
             return Ok(Self::Standard);
         }
         let cannot = |error: io::Error| cannot_write(path, &error);
-        // A link stays a link: what it points to is replaced.
+        // A symbolic link is kept; its target is replaced.
         let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         if target.exists() && !target.is_file() {
             let stream = File::options().write(true).open(&target).map_err(cannot)?;
@@ -35,12 +34,12 @@ impl Output {
             let is_target = |input: &&Path| std::fs::canonicalize(input).is_ok_and(|input| input == target);
             ensure!(
                 !inputs.iter().any(is_target),
-                "{}: is read as well and would be written over; give another file for the result",
+                "{}: is also an input and would be overwritten; give another file for the result",
                 path.display()
             );
             File::options().append(true).open(&target).map_err(cannot)?;
         }
-        // Made and removed at once: nothing is left behind if the work is broken off.
+        // Created and removed at once, so that an aborted run leaves no file behind.
         temporary_beside(&target).map_err(cannot)?;
         Ok(Self::File(target))
     }
@@ -64,16 +63,16 @@ impl Output {
     }
 }
 
-/// Says why and what to do, without the name of the temporary file, which would only confuse.
+/// The cause and the remedy, without the confusing name of the temporary file.
 fn cannot_write(path: &Path, error: &io::Error) -> anyhow::Error {
     anyhow!(
-        "{}: cannot be written ({}); give a file in a folder that exists and that you may write to",
+        "{}: cannot be written ({}); give a file in an existing folder with write permission",
         path.display(),
         error.kind()
     )
 }
 
-/// A file in the folder of `path`, to be renamed to it.
+/// A temporary file in the folder of `path`, to be renamed to `path`.
 fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -83,7 +82,7 @@ fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // As for any new file; the user's mask takes away what it takes away.
+        // The usual mode of a new file, before the umask is applied.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder)

@@ -6,7 +6,7 @@ use hangpose::Params;
 use std::path::Path;
 
 impl MethodArguments {
-    /// The profile, with what the file and the seed change.
+    /// The constants of the profile, overridden by the params file and the seed option.
     pub(super) fn params(&self) -> Result<Params> {
         let profile = match self.profile {
             Profile::Paper => Params::paper(),
@@ -23,15 +23,15 @@ impl MethodArguments {
     }
 }
 
-/// `profile` with the values in the file at `path`.
+/// `profile` with the values of the file at `path` in place of its own.
 fn overlay(profile: &Params, path: &Path) -> Result<Params> {
     let at = || path.display().to_string();
     let text = std::fs::read_to_string(path)
-        .with_context(|| format!("{}: cannot be read; give a TOML file with constants", at()))?;
-    // Read as a whole first: its errors name the line and the keys that there are.
+        .with_context(|| format!("{}: cannot be read; give a readable TOML file of constants", at()))?;
+    // Parsed as `Params` first: these errors name the line and the valid keys.
     let checked: Params =
         toml::from_str(&text).map_err(|error| anyhow!("{}: {}", at(), error.to_string().trim_end()))?;
-    checked.validate().with_context(|| format!("{}: mend the value", at()))?;
+    checked.validate().with_context(|| format!("{}: correct this value", at()))?;
     let mut merged = toml::Table::try_from(profile).context("a profile is a table")?;
     merged.extend(text.parse::<toml::Table>().with_context(at)?);
     merged.try_into().with_context(at)

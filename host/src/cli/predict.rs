@@ -17,13 +17,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Nothing hangs.
+/// Exit status when nothing hangs.
 const REJECTED: u8 = 3;
 
 pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     let start = Instant::now();
-    // What costs least comes first, so that a mistake shows at once: the constants, the place for the result, and
-    // then the object before the supporter.
+    // The cheapest checks come first, so that a mistake is reported at once: constants, output file, object, supporter.
     let mut params = arguments.method.params()?;
     if let Some(com) = arguments.com {
         params.centre_of_mass = CentreOfMass::Given(com);
@@ -109,38 +108,38 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     Ok(if prediction.rejection.is_some() { ExitCode::from(REJECTED) } else { ExitCode::SUCCESS })
 }
 
-/// The result of `work` and how long it took, in seconds.
+/// The result of `work` and its duration in seconds.
 fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let start = Instant::now();
     let result = work();
     (result, start.elapsed().as_secs_f64())
 }
 
-/// A centre of mass outside the object's box is in another unit or another frame.
+/// Warns of a centre of mass outside the object's bounding box, which is in another unit or another frame.
 fn warn_of_centre_of_mass(mesh: &Mesh, arguments: &PredictArguments) {
     let (Some(com), aabb) = (arguments.com, mesh.aabb()) else { return };
     let (offset, half) = (Point::from(com) - aabb.centre(), aabb.extents() / 2.0);
     if (0..3).any(|i| offset[i].abs() > half[i]) {
-        let warning = "--com is outside the object; give metres in the object's frame, after scale and up";
+        let warning = "--com is outside the object's bounding box; give metres in the object frame, after scale and up axis";
         say("warning", format_args!("{}: {warning}", arguments.object.display()));
     }
 }
 
-/// The poses, or the reason why there are none, for people.
+/// The poses as a table, or the reason why there are none.
 fn table(prediction: &hanging::Prediction, mesh: &Mesh, object: &Object, supporter: &Supporter) -> String {
     let size = |aabb: &Aabb| {
         let [x, y, z] = <[f32; 3]>::from(aabb.extents()).map(|x| 1000.0 * x);
         format!("{x:.0} x {y:.0} x {z:.0} mm")
     };
     let mut text = format!(
-        "object: {} triangles, {}, {}, {} places to hang by; supporter: {} points, {}, {} places to hang on\n",
+        "object: {} triangles, {}, {}, {}; supporter: {} points, {}, {}\n",
         mesh.triangles().len(),
         closedness(object.mass()),
         size(&mesh.aabb()),
-        object.sites().len() + object.contacts().len(),
+        candidates(object.sites().len(), "hanging sites", object.contacts().len()),
         supporter.points().points().len(),
         size(&supporter.points().aabb()),
-        supporter.sites().len() + supporter.contacts().len(),
+        candidates(supporter.sites().len(), "support sites", supporter.contacts().len()),
     );
     if let Some(rejection) = &prediction.rejection {
         text += &format!("nothing hangs: {}\n", rejection.stage);
@@ -152,7 +151,7 @@ fn table(prediction: &hanging::Prediction, mesh: &Mesh, object: &Object, support
     };
     let best = prediction.poses.first();
     if best.is_some_and(|pose| pose.matched.is_some()) {
-        text += "rank    total  collision  boundary  contact area   on the supporter, mm    with the object's, mm\n";
+        text += "rank    total  collision  boundary  contact area         support site, mm         hanging site, mm\n";
     }
     for (rank, pose) in (1..).zip(prediction.poses) {
         if let Some(SiteMatch { cost, object_site, support_site, .. }) = &pose.matched {
@@ -166,13 +165,19 @@ fn table(prediction: &hanging::Prediction, mesh: &Mesh, object: &Object, support
         if let Some(rest) = &pose.rest {
             text += &format!("{rank:4}  {}\n", in_words(rest));
         } else if pose.matched.is_none() {
-            text += &format!("{rank:4}  at{} mm\n", point(&pose.pose.translation.vector.into()));
+            text +=
+                &format!("{rank:4}  object origin at{} mm\n", point(&pose.pose.translation.vector.into()));
         }
     }
     text
 }
 
-/// How firmly an object hangs, for people.
+/// Counts the sites of the published method, or else the contact candidates.
+fn candidates(sites: usize, name: &str, contacts: usize) -> String {
+    if sites > 0 { format!("{sites} {name}") } else { format!("{contacts} contact candidates") }
+}
+
+/// How firmly an object hangs, in words.
 fn in_words(rest: &Rest) -> String {
     let margin = &rest.margin;
     let tilt = margin.least_tilt().to_degrees();
@@ -180,10 +185,10 @@ fn in_words(rest: &Rest) -> String {
         if margin.least_tilt() >= hangpose::mechanics::Margin::MOST_TILT { "at least " } else { "" };
     let at = rest.contacts().iter().max_by(|a, b| a.force.total_cmp(&b.force)).map_or(String::new(), |c| {
         let [x, y, z] = [c.position.x, c.position.y, c.position.z].map(|x| 1000.0 * x);
-        format!(", on ({x:.0}, {y:.0}, {z:.0}) mm")
+        format!(", main contact at ({x:.0}, {y:.0}, {z:.0}) mm")
     });
     format!(
-        "hangs with a probability of {:.0} %: stays up to {at_least}a {tilt:.0} degree tilt or a {:.1} m/s knock; let go, it sinks {:.1} mm{at}",
+        "hangs with probability {:.0} %, tolerates a tilt of {at_least}{tilt:.0} degrees or a knock of {:.1} m/s, sinks {:.1} mm after release{at}",
         100.0 * rest.probability,
         margin.knock_speed,
         1000.0 * rest.sinking,

@@ -1,13 +1,14 @@
-//! A progress bar on standard error while work goes on.
+//! A progress bar on standard error.
 
 use hangpose::Monitor;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::Duration;
 
+/// Length of the bar in steps of progress.
 const STEPS: u64 = 1000;
 
-/// Runs `work` and shows the mean progress of `monitors` meanwhile, if standard error is a terminal.
+/// Runs `work` and, if standard error is a terminal, shows the mean progress of `monitors` until it ends.
 pub(super) fn show_while<T: Send>(monitors: &[&Monitor], work: impl FnOnce() -> T + Send) -> T {
     if !std::io::stderr().is_terminal() {
         return work();

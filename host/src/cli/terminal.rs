@@ -1,10 +1,10 @@
-//! What people read: results on standard output, notes, warnings and errors on standard error.
+//! Text output: results on standard output, notes, warnings and errors on standard error.
 
 use anyhow::{Context, Result};
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 
-/// Prints a result. A reader that has seen enough and closed the pipe, such as `head`, is no error.
+/// Prints a result. A pipe that its reader has closed, as `head` does, is not an error.
 pub(super) fn print(text: &str) -> Result<()> {
     let mut stdout = std::io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
@@ -13,9 +13,9 @@ pub(super) fn print(text: &str) -> Result<()> {
     }
 }
 
-/// Says something beside the result: `kind` is `note`, `warning` or `error`.
+/// Prints a message of `kind` `note`, `warning` or `error` to standard error.
 ///
-/// Where nobody listens on standard error, there is nobody to tell that either.
+/// A failure to write is ignored, since there is no other channel to report it on.
 pub(crate) fn say(kind: &str, text: impl Display) {
     let _ = writeln!(std::io::stderr(), "{kind}: {text}");
 }

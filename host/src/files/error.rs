@@ -1,14 +1,14 @@
-//! What can go wrong with a file, where, and how to mend it.
+//! Errors of the file readers.
 
 use std::fmt;
 use std::path::PathBuf;
 
 use thiserror::Error;
 
-/// Where in a file something was found.
+/// Location of an error in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// Nowhere in particular.
+    /// The file as a whole.
     Whole,
     /// A line of a text file, counted from 1.
     Line(usize),
@@ -16,7 +16,7 @@ pub enum Place {
     Byte(usize),
     /// A face in the order of the file, counted from 0.
     Face(usize),
-    /// A part by its name, for formats that are a tree.
+    /// A named part of the file.
     Part(String),
 }
 
@@ -34,33 +34,33 @@ impl fmt::Display for Place {
 
 /// Why a file could not be read.
 ///
-/// The message says what, where and how to mend it. Every variant names its file.
+/// The message states what is wrong, where, and how to mend it. Every variant names its file.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum FileError {
-    /// Nothing is there.
+    /// The file does not exist.
     #[error("{path}: no such file; check the path")]
     Missing {
         /// The file.
         path: PathBuf,
     },
-    /// Something is there, but it cannot be read: a directory, or without permission.
-    #[error("{path}: cannot be read: {reason}; give the path of a file that you may read")]
+    /// The path is a directory or device, or the file cannot be read, for example without permission.
+    #[error("{path}: cannot be read: {reason}; give the path of a file with read permission")]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// Reason given by the operating system.
         reason: String,
     },
-    /// Zero bytes.
+    /// The file has zero bytes.
     #[error("{path}: the file is empty; export or copy it again")]
     Empty {
         /// The file.
         path: PathBuf,
     },
-    /// The extension names no format that is read here.
+    /// The extension is not that of a supported format.
     #[error(
-        "{path}: {}; known are {known}: rename the file if it is one of these, else export it as one",
+        "{path}: {}; supported are {known}: rename the file if it has one of these formats, otherwise export it as one",
         said(extension)
     )]
     UnknownFormat {
@@ -68,32 +68,32 @@ pub enum FileError {
         path: PathBuf,
         /// Its extension, empty if it has none.
         extension: String,
-        /// The extensions that would do.
+        /// The supported extensions.
         known: &'static str,
     },
-    /// The file ends before what it promises.
+    /// The file is shorter than its header declares.
     #[error("{path}: {place}: {reason}; the file is cut off or its header is wrong: copy or export it again")]
     Truncated {
         /// The file.
         path: PathBuf,
-        /// Where it ends, or the header that promises too much.
+        /// Where the file ends, or its header.
         place: Place,
-        /// What was promised and what is there.
+        /// The declared and the actual size.
         reason: String,
     },
-    /// The file is not what its extension says, or breaks the rules of its format.
+    /// The file violates the rules of its format, or has another format than its extension says.
     #[error("{path}: {place}: {reason}; {remedy}")]
     Malformed {
         /// The file.
         path: PathBuf,
-        /// Where.
+        /// Location of the error.
         place: Place,
-        /// What the format's reader says.
+        /// Reason given by the reader of the format.
         reason: String,
-        /// What to do about it.
+        /// How to mend the file.
         remedy: &'static str,
     },
-    /// A mesh file without faces and without vertices.
+    /// A mesh file has neither faces nor vertices.
     #[error(
         "{path}: holds no triangles; check that the exporter includes the mesh, not only lines, cameras or materials"
     )]
@@ -101,23 +101,23 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
     },
-    /// A cloud file without points.
+    /// A cloud file has no points.
     #[error("{path}: holds no points{}; check that the camera or exporter wrote any", all_missing(*missing))]
     NoPoints {
         /// The file.
         path: PathBuf,
-        /// How many points are marked as missing (NaN).
+        /// Number of points that are marked as missing (NaN).
         missing: usize,
     },
-    /// A point cloud where a mesh is needed.
+    /// The file is a point cloud where a mesh is needed.
     #[error(
-        "{path}: is a point cloud (points without faces), but a mesh is needed; reconstruct its surface first and save that as obj, stl, ply or glb"
+        "{path}: is a point cloud (points without faces), but a mesh is needed; reconstruct its surface first and save it as obj, stl, ply or glb"
     )]
     CloudNotMesh {
         /// The file.
         path: PathBuf,
     },
-    /// A mesh where a point cloud is needed.
+    /// The file is a mesh where a point cloud is needed.
     #[error(
         "{path}: is a mesh, but a point cloud is needed; sample points on its surface first and save them as ply, pcd or xyz"
     )]
@@ -125,56 +125,56 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
     },
-    /// A coordinate or a normal that is NaN or infinite.
+    /// A coordinate or a normal is NaN or infinite.
     #[error(
-        "{path}: {item} {index} (counted from 0) is not finite; check the exporter, or remove it and what uses it"
+        "{path}: {item} {index} (counted from 0) is not finite; check the exporter, or remove it and everything that uses it"
     )]
     NotFinite {
         /// The file.
         path: PathBuf,
         /// `vertex`, `point` or `normal of point`.
         item: &'static str,
-        /// Which, in the order of the file, counted from 0.
+        /// Index of the item in the order of the file, counted from 0.
         index: usize,
     },
-    /// A face that uses a vertex that does not exist.
+    /// A face uses a vertex that does not exist.
     #[error(
         "{path}: {place} uses vertex {index}, but there are {count} vertices, counted from {first}; the file is cut off or its exporter is faulty: export it again"
     )]
     IndexOutOfRange {
         /// The file.
         path: PathBuf,
-        /// Which face.
+        /// The face.
         place: Place,
-        /// The vertex that it asks for, as the format counts.
+        /// Index of the vertex, counted as in the format.
         index: i64,
-        /// How many vertices there are.
+        /// Number of vertices.
         count: usize,
-        /// The number of the first vertex in this format: 0, in OBJ 1.
+        /// Index of the first vertex in this format: 1 in OBJ, 0 elsewhere.
         first: u32,
     },
-    /// Faces, but none with an area.
+    /// No face has an area.
     #[error("{path}: none of its {faces} faces has an area; check the scale and the unit of the export")]
     AllDegenerate {
         /// The file.
         path: PathBuf,
-        /// How many there are.
+        /// Number of faces.
         faces: usize,
     },
-    /// More than can be counted or held.
-    #[error("{path}: has more than {most} vertices and corners of faces; decimate the mesh first")]
+    /// The mesh exceeds the reader's limit.
+    #[error("{path}: has more than {most} vertices and face corners in all; decimate the mesh first")]
     TooLarge {
         /// The file.
         path: PathBuf,
-        /// The limit.
+        /// Largest permitted number of vertices and face corners.
         most: usize,
     },
 }
 
 fn said(extension: &str) -> String {
     match extension {
-        "" => "the name has no extension to tell its format".into(),
-        other => format!("\".{other}\" is not a format that is read here"),
+        "" => "the file name has no extension".into(),
+        other => format!("\".{other}\" is not a supported format"),
     }
 }
 

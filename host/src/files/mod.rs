@@ -2,20 +2,20 @@
 //!
 //! | kind  | extensions | notes |
 //! | ----- | ---------- | ----- |
-//! | mesh  | `obj`      | polygons of any shape, objects and groups merged |
+//! | mesh  | `obj`      | polygons of any shape; objects and groups are merged |
 //! | mesh  | `stl`      | text and binary |
 //! | mesh  | `ply`      | text and binary of both byte orders |
-//! | mesh  | `glb`, `gltf` | every node of every scene, transforms applied |
+//! | mesh  | `glb`, `gltf` | every node of every scene, with its transform |
 //! | cloud | `ply`, `obj` | without faces |
-//! | cloud | `pcd`      | text, binary and compressed; missing (NaN) points left out |
-//! | cloud | `xyz`, `txt`, `pts` | `x y z` or `x y z nx ny nz` a line |
+//! | cloud | `pcd`      | text, binary and compressed; missing (NaN) points are dropped |
+//! | cloud | `xyz`, `txt`, `pts` | `x y z` or `x y z nx ny nz` per line |
 //!
-//! Coordinates are taken as they stand: no format but glTF has a unit, and none is turned or scaled here. glTF is y-up by
-//! its specification; whoever hangs the object says which way is up.
+//! Coordinates are returned as in the file. Only glTF has a unit, and no format is rotated or scaled here. glTF is y-up
+//! by its specification; the caller states the up axis.
 //!
-//! Vertices that stand at the same place, bit for bit, become one, so that a solid is closed whatever the format. What was
-//! changed on the way is told in the `notes`; what could not be read is a [`FileError`] that names the place and the remedy.
-//! No file makes a reader panic or reserve memory that the file's own length does not call for.
+//! Vertices with bitwise equal coordinates are merged, so that a solid is closed in every format. The `notes` report
+//! what a reader changed. A file that cannot be read is a [`FileError`] that names the place and the remedy. No file
+//! makes a reader panic, or reserve memory out of proportion to the length of the file.
 
 mod cloud;
 mod error;

@@ -1,7 +1,7 @@
-//! PLY, which holds a mesh or a cloud.
+//! PLY, a format for meshes and point clouds.
 //!
-//! ply-rs-bw reads the header and binary bodies. Text bodies are read here: its grammar for numbers knows neither `nan`,
-//! which must be told from nonsense, nor `.5`, `1.` or an empty line.
+//! ply-rs-bw reads the header and binary bodies. Text bodies are read here, because its grammar accepts neither `.5`,
+//! `1.` and empty lines nor `nan`, which needs an error message of its own.
 
 use std::io::Cursor;
 
@@ -10,21 +10,30 @@ use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
-use super::mesh::RawMesh;
 use super::source::Source;
 use super::text::{lines, number, short};
 use super::{FileError, Place};
 
+/// The vertices and faces of a file, unchecked.
+#[derive(Default)]
 pub(super) struct Ply {
-    /// Vertices and faces.
-    pub(super) mesh: RawMesh,
-    /// A normal for each vertex, if there are any.
+    pub(super) vertices: Vec<[f32; 3]>,
+    /// One normal per vertex, if the file has normals.
     pub(super) normals: Option<Vec<[f32; 3]>>,
+    pub(super) faces: Vec<Face>,
+}
+
+/// A polygon.
+pub(super) struct Face {
+    /// Vertex indices of its corners, counted from 0.
+    pub(super) corners: Vec<i64>,
+    /// Its line in a text file, 0 in a binary file.
+    pub(super) line: usize,
 }
 
 const NAMES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
-/// A vertex or a face; what is of no interest is not kept.
+/// A vertex or a face; other properties are dropped.
 #[derive(Default)]
 struct Row {
     numbers: [f32; 6],
@@ -79,7 +88,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Ply, FileError> {
     let body = reader.get_ref().position() as usize;
     check_lengths(source, &header, body)?;
 
-    let mut ply = Ply { mesh: RawMesh::default(), normals: None };
+    let mut ply = Ply::default();
     let mut text = Text::new(source, body);
     for element in header.elements.values() {
         let rows = match header.encoding {
@@ -106,7 +115,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Ply, FileError> {
             "tristrips" => {
                 return Err(source.malformed(
                     Place::Part("element tristrips".into()),
-                    "triangle strips are not read here",
+                    "triangle strips are not supported",
                 ));
             }
             _ => {}
@@ -126,7 +135,7 @@ impl Ply {
         if !has(&NAMES[..3]) {
             return Err(source.malformed(Place::Part("element vertex".into()), "it lacks x, y or z"));
         }
-        self.mesh.vertices = rows.iter().map(|(row, _)| [0, 1, 2].map(|k| row.numbers[k])).collect();
+        self.vertices = rows.iter().map(|(row, _)| [0, 1, 2].map(|k| row.numbers[k])).collect();
         self.normals =
             has(&NAMES[3..]).then(|| rows.iter().map(|(row, _)| [3, 4, 5].map(|k| row.numbers[k])).collect());
         Ok(())
@@ -141,22 +150,20 @@ impl Ply {
         if element.count > 0 && !element.properties.keys().any(|name| is_indices(name)) {
             return Err(source.malformed(Place::Part("element face".into()), "it lacks vertex_indices"));
         }
-        for (row, line) in rows {
-            self.mesh.face(row.indices, line);
-        }
+        self.faces.extend(rows.into_iter().map(|(row, line)| Face { corners: row.indices, line }));
         Ok(())
     }
 }
 
-/// Refuses counts that the file is too short for, before anything is read or reserved.
+/// Rejects element counts that exceed the length of the file, before anything is read or reserved.
 fn check_lengths(source: &Source<'_>, header: &Header, body: usize) -> Result<(), FileError> {
     let held = source.bytes.len() - body;
     let mut wanted = 0_usize;
     for element in header.elements.values() {
         let size = match header.encoding {
-            // A digit and a space each.
+            // At least a digit and a space per property.
             Encoding::Ascii => 2 * element.properties.len(),
-            // Of a list, its length alone is certain.
+            // A list may be empty, so only its length field counts.
             _ => element
                 .properties
                 .values()
@@ -170,10 +177,10 @@ fn check_lengths(source: &Source<'_>, header: &Header, body: usize) -> Result<()
             return Err(source.malformed(Place::Part(format!("element {name}")), "it has no properties"));
         }
         wanted = wanted.saturating_add(size.saturating_mul(element.count));
-        // The last number of a text needs no space after it.
+        // No space follows the last number of a text.
         if wanted > held + 1 {
             let reason = format!(
-                "the header promises {} of element {name}, for which {held} bytes after the header are too few",
+                "the header declares {} of element {name}, for which {held} bytes after the header are too few",
                 element.count
             );
             return Err(source.truncated(Place::Byte(body), reason));
@@ -191,7 +198,7 @@ fn size(kind: &ScalarType) -> usize {
     }
 }
 
-/// The loader names the line and quotes the whole of it; what stands between is enough.
+/// The message of ply-rs-bw without the line number in front and the quoted line behind.
 fn first_line(message: &str) -> String {
     let message = message.lines().next().unwrap_or_default();
     let message = match message.split_once(": ") {
@@ -201,7 +208,7 @@ fn first_line(message: &str) -> String {
     message.trim_end_matches('.').to_string()
 }
 
-/// The body of a text PLY: a row a line.
+/// The body of a text PLY, with one row per line.
 struct Text<'a> {
     source: &'a Source<'a>,
     lines: Box<dyn Iterator<Item = (usize, std::borrow::Cow<'a, str>)> + 'a>,
@@ -219,7 +226,7 @@ impl<'a> Text<'a> {
         for i in 0..element.count {
             let Some((line, text)) = self.lines.next() else {
                 let reason = format!(
-                    "the header promises {} of element {}, but there are {i}",
+                    "the header declares {} of element {}, but there are {i}",
                     element.count, element.name
                 );
                 return Err(self.source.truncated(Place::Whole, reason));
@@ -251,7 +258,7 @@ fn row(element: &ElementDef, text: &str) -> Result<Row, String> {
                 for i in 0..length {
                     let word = words
                         .next()
-                        .ok_or_else(|| format!("{name} promises {length} numbers, but has {i}"))?;
+                        .ok_or_else(|| format!("{name} declares {length} numbers, but has {i}"))?;
                     if is_indices(name) {
                         row.indices.push(word.parse().map_err(|_| nonsense(word))?);
                     }

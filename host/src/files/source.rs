@@ -1,4 +1,4 @@
-//! A file's bytes and format, and the errors that any format can have.
+//! Content and format of a file, and the errors that all formats share.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::{FileError, Place};
 
-/// The formats, by extension.
+/// File formats, determined by the extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Format {
     Obj,
@@ -50,7 +50,7 @@ impl Format {
     }
 }
 
-/// A file in memory.
+/// A file read into memory.
 pub(super) struct Source<'a> {
     pub(super) path: &'a Path,
     pub(super) format: Format,
@@ -58,7 +58,7 @@ pub(super) struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// Reads the whole file; `known` lists the extensions that would do, for the error.
+    /// Reads the whole file; `known` lists the supported extensions for the error message.
     pub(super) fn open(path: &'a Path, known: &'static str) -> Result<Self, FileError> {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let format = Format::of(&extension);
@@ -99,7 +99,7 @@ fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     if metadata.is_dir() {
         return Err(unreadable("it is a directory"));
     }
-    // A device or a pipe may never end.
+    // Reading a device or a pipe may never end.
     if !metadata.is_file() {
         return Err(unreadable("it is not a regular file"));
     }

@@ -1,22 +1,22 @@
-//! A supporter is whatever the robot has of it: a scan or a model.
+//! Supporters, which may be scans or models.
 
 use std::path::Path;
 
 use super::source::{ANY, Format, Source};
 use super::{CloudFile, FileError, MeshFile, cloud, mesh};
 
-/// What a supporter's file holds.
+/// Content of a supporter's file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SupporterFile {
-    /// A surface.
+    /// A triangle mesh.
     Mesh(MeshFile),
-    /// Points.
+    /// A point cloud.
     Cloud(CloudFile),
 }
 
 /// Reads a supporter, mesh or cloud.
 ///
-/// The extension decides, but for PLY and OBJ, which can be either: with faces they are a mesh, without a cloud.
+/// The extension decides. PLY and OBJ can hold either: a file with faces is a mesh, a file without faces is a cloud.
 pub fn read_supporter(path: &Path) -> Result<SupporterFile, FileError> {
     let source = Source::open(path, ANY)?;
     match source.format {

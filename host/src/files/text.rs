@@ -1,9 +1,9 @@
-//! Lines and numbers, as exporters of every age write them.
+//! Lines and numbers of text formats, in all the variants that exporters write.
 
 use std::borrow::Cow;
 
-/// The lines with their numbers, counted from 1. Ends of line may be LF, CR LF or CR; bytes that are not UTF-8 (a material's
-/// name in an old code page, say) become replacement characters.
+/// The lines with their numbers, counted from 1. A line ends with LF, CR LF or CR. Bytes that are not UTF-8, such as a
+/// material's name in an old code page, become replacement characters.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, str>)> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
@@ -13,7 +13,7 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, str>)>
         .map(|(i, line)| (i + 1, String::from_utf8_lossy(line.trim_ascii())))
 }
 
-/// What stands before a `#`, unless it is the one in `1.#QNAN`.
+/// The line up to its comment, which begins with `#`. The `#` of `1.#QNAN` does not begin one.
 pub(super) fn before_comment(line: &str) -> &str {
     match line.match_indices('#').find(|(at, _)| !line[..*at].ends_with('.')) {
         Some((at, _)) => &line[..at],
@@ -21,7 +21,7 @@ pub(super) fn before_comment(line: &str) -> &str {
     }
 }
 
-/// A number, or `None` if the word is none. What C libraries print for NaN (`-nan(ind)`, `1.#QNAN`) is NaN.
+/// Parses a number. The spellings of NaN by C libraries (`-nan(ind)`, `1.#QNAN`) are accepted.
 pub(super) fn number(word: &str) -> Option<f32> {
     word.parse().ok().or_else(|| {
         let bare = word.trim_start_matches(['-', '+']).to_ascii_lowercase();
@@ -29,7 +29,7 @@ pub(super) fn number(word: &str) -> Option<f32> {
     })
 }
 
-/// The next three words as numbers; `Err` says what stands in the way.
+/// Parses the next three words as numbers; `Err` is the reason for an error message.
 pub(super) fn three<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<[f32; 3], String> {
     let mut out = [0.0; 3];
     for value in &mut out {
@@ -39,7 +39,7 @@ pub(super) fn three<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<[f3
     Ok(out)
 }
 
-/// A word from a file, cut so that it fits into a message.
+/// A word of a file, shortened for an error message.
 pub(super) fn short(word: &str) -> String {
     let mut cut: String = word.chars().take(24).map(|c| if c.is_control() { '?' } else { c }).collect();
     if word.chars().nth(24).is_some() {

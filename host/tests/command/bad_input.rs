@@ -1,10 +1,10 @@
-//! Bad input: exit status 1, one error that names file, item and remedy, and nothing on standard output.
+//! Bad input gives exit status 1, one error that names file, item and remedy, and nothing on standard output.
 
 use super::*;
 
 const TRIANGLE: &str = "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\n";
 
-/// Asserts that `run` failed with an error that says all of `parts`.
+/// Asserts that `run` failed with an error message that contains all of `parts`.
 #[track_caller]
 fn assert_error(run: &Run, parts: &[&str]) {
     assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""), "{}", run.stderr);
@@ -20,7 +20,7 @@ fn of_an_object() {
     let faces = |list: &str| format!("{TRIANGLE}{list}");
     for (name, content, parts) in [
         ("empty.obj", String::new(), ["the file is empty", "export or copy it again"]),
-        ("mug.step", "ISO-10303".into(), ["\".step\" is not a format", "obj, stl, ply"]),
+        ("mug.step", "ISO-10303".into(), ["\".step\" is not a supported format", "obj, stl, ply"]),
         ("mug", half.clone(), ["no extension", "rename the file"]),
         ("lines.obj", "# nothing\n".into(), ["no triangles", "check that the exporter"]),
         ("points.obj", TRIANGLE.into(), ["is a point cloud", "reconstruct its surface"]),
@@ -57,7 +57,7 @@ fn of_a_supporter() {
         ("far.xyz", "0 0 0\n0 0 1e30\n".into(), ["point 1", "drop the points"]),
         ("cut.ply", format!("{header}0 0 0\n"), ["cut off", "again"]),
         ("words.xyz", "zero zero zero\n".into(), ["line 1", "write x y z"]),
-        ("cloud.las", "LASF".into(), ["\".las\" is not a format", "pcd"]),
+        ("cloud.las", "LASF".into(), ["\".las\" is not a supported format", "pcd"]),
     ] {
         let path = scene.write(name, content);
         let parts = [name, parts[0], parts[1]];
@@ -82,7 +82,7 @@ fn of_a_binary_file_that_is_cut_off() {
 fn beyond_the_limits() {
     let scene = Scene::new();
     let cloud = scene.write("huge.xyz", "0 0 0\n".repeat(1_000_003));
-    let parts = ["huge.xyz", "1000003 points are 3 more than the limit of 1000000", "thin the cloud out"];
+    let parts = ["huge.xyz", "1000003 points are 3 more than the limit of 1000000", "downsample the cloud"];
     assert_error(&run!("predict", "--object", scene.ring, "--supporter", cloud), &parts);
     let mesh = scene.write("huge.obj", format!("{TRIANGLE}{}", "f 1 2 3\n".repeat(2_000_005)));
     let parts = ["huge.obj", "2000005 triangles are 5 more than the limit of 2000000", "decimate the mesh"];
@@ -105,7 +105,7 @@ fn of_constants() {
             run!("inspect", scene.ring, "--params", path),
         ] {
             assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""), "{}", run.stderr);
-            // The reader of TOML shows the line below its message.
+            // The message of the TOML parser continues on the lines below.
             assert!(
                 [name, parts[0], parts[1]].iter().all(|part| run.stderr.contains(part)),
                 "{}",

@@ -1,4 +1,4 @@
-//! Each field of the JSON: that it is there, what it is, and what it means.
+//! Presence, type and meaning of every JSON field.
 
 use super::shapes::{PEG_LENGTH, PEG_RADIUS, assert_hangs_by_the_ring, weighted_ring_centre_z};
 use super::*;
@@ -23,16 +23,16 @@ fn the_document_has_the_fields_that_programs_read() {
     for part in ["object", "supporter"] {
         assert!(stats["memory_bytes"][part].as_u64().unwrap() > 10_000);
         assert!(stats["contacts"][part].as_u64().unwrap() > 0);
-        assert_eq!(stats["sites"][part], 0, "the paper's, which were not asked for");
+        assert_eq!(stats["sites"][part], 0, "the default profile has no sites");
     }
     assert!(stats["memory_bytes"]["prediction"].as_u64().unwrap() > 10_000);
     assert_eq!(stats["contacts"]["object"], stats["counts"]["hangability"]["contacts"]);
     assert_eq!(stats["contacts"]["supporter"], stats["counts"]["supportability"]["contacts"]);
     let settling = |name: &str| stats["counts"]["settling"][name].as_u64().unwrap();
     let fates = ["rotated_off", "slid_off", "moving", "at_rest"].map(settling);
-    assert_eq!(settling("released"), fates.iter().sum::<u64>(), "each ended somehow");
+    assert_eq!(settling("released"), fates.iter().sum::<u64>(), "every release has one fate");
     assert!(settling("candidates") >= settling("clear") && settling("at_rest") >= settling("firm"));
-    // Those that are worse than ten others are not told.
+    // The document has at most ten poses.
     assert_eq!(settling("probable").min(10), document["poses"].as_array().unwrap().len() as u64);
 
     assert_eq!(document["params"]["samples"], 10_000);
@@ -53,7 +53,7 @@ fn the_papers_document_has_sites() {
     assert_eq!(number(&stats["counts"]["matching"]["pairs"]), pairs);
 }
 
-/// An object's row-major pose in the JSON, under this name.
+/// The row-major pose under this key.
 fn pose(entry: &Value, name: &str) -> [f64; 16] {
     let pose = numbers::<16>(&entry[name]);
     assert_is_rigid(&pose);
@@ -61,7 +61,7 @@ fn pose(entry: &Value, name: &str) -> [f64; 16] {
 }
 
 #[test]
-fn poses_come_to_rest_and_say_how_firmly() {
+fn poses_come_to_rest_with_margins() {
     let scene = Scene::new();
     for (object, supporter) in [
         (scene.ring.clone(), scene.peg.clone()),
@@ -79,13 +79,13 @@ fn poses_come_to_rest_and_say_how_firmly() {
             let [release, rest] = ["pose", "rest_pose"].map(|name| pose(entry, name));
             assert_agrees(&release, numbers(&entry["position"]), numbers(&entry["quaternion_xyzw"]));
             for absent in ["cost", "object_site", "supporter_site"] {
-                assert!(entry[absent].is_null(), "{absent} is the paper's");
+                assert!(entry[absent].is_null(), "{absent} belongs to the published method");
             }
 
             let [from, to] = [release, rest].map(|pose| transform(&pose, centre_of_mass));
             let sinking = number(&entry["sinking"]);
             assert!((from[2] - to[2] - sinking).abs() < 1e-5, "rank {rank}: {from:?} {to:?} {sinking}");
-            assert!(distance(from, to) < 0.02, "released where it comes to rest: {from:?} {to:?}");
+            assert!(distance(from, to) < 0.02, "release and rest differ by less than 20 mm: {from:?} {to:?}");
             let clearance = number(&entry["clearance"]);
             assert!(clearance > 0.0 && clearance <= 0.0010001, "{clearance}");
 
@@ -103,7 +103,7 @@ fn poses_come_to_rest_and_say_how_firmly() {
                 assert!(number(&margin[name]) >= 0.0, "{name}");
             }
 
-            // What bears pushes up, together as hard as the object weighs, but for what friction may bear or add.
+            // The vertical components of the normal forces balance the weight, up to what friction can contribute.
             let contacts = entry["contacts"].as_array().unwrap();
             assert!((1..=8).contains(&contacts.len()));
             let (mut borne, mut pressed) = (0.0, 0.0);
@@ -114,14 +114,17 @@ fn poses_come_to_rest_and_say_how_firmly() {
                 pressed += number(&contact["force"]);
             }
             let rubbed = number(&document["params"]["friction"]) * pressed;
-            assert!(borne + rubbed > 0.95 && borne - rubbed < 1.05, "rank {rank}: {borne} of the weight");
+            assert!(
+                borne + rubbed > 0.95 && borne - rubbed < 1.05,
+                "rank {rank}: contacts carry {borne} of the weight"
+            );
             let [x, y, _] = to;
             let is_beside = |c: &Value| {
                 let [u, v, _] = numbers::<3>(&c["position"]);
                 (x - u).hypot(y - v)
             };
             let nearest = contacts.iter().map(is_beside).fold(f64::INFINITY, f64::min);
-            assert!(nearest < 0.05, "hangs from where it is borne: {nearest}");
+            assert!(nearest < 0.05, "the nearest contact is {nearest} m beside the centre of mass");
         }
     }
 }
@@ -132,14 +135,15 @@ fn the_ring_hangs_on_the_peg_with_the_weight_below() {
     let [best] = &document["poses"].as_array().unwrap()[..] else { panic!("--top 1") };
     let rest = pose(best, "rest_pose");
     assert_hangs_by_the_ring(best);
-    // It rests on one contact, which the weight presses as far as it is along the normal; friction bears the rest.
+    // It rests on one contact. The normal force is the component of the weight along the normal; friction carries the
+    // rest.
     let [contact] = &best["contacts"].as_array().unwrap()[..] else { panic!("{}", best["contacts"]) };
     let (force, [_, _, up]) = (number(&contact["force"]), numbers::<3>(&contact["normal"]));
-    assert!((force - up).abs() < 0.01, "nothing is wedged: {contact}");
-    assert!(up > 1.0_f64.hypot(0.4).recip(), "within the angle of friction: {contact}");
+    assert!((force - up).abs() < 0.01, "the normal force is not the weight along the normal: {contact}");
+    assert!(up > 1.0_f64.hypot(0.4).recip(), "outside the friction cone: {contact}");
     let [origin, tip, weight] =
         [[0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, weighted_ring_centre_z()]].map(|p| transform(&rest, p));
-    // The peg goes through the ring, whose axis is y in its own frame, and the weight hangs straight below.
+    // The peg goes through the ring, whose axis is y in the object frame, and the weight hangs straight below.
     assert!((tip[0] - origin[0]).abs() > 0.8, "{tip:?}");
     assert!(weight[2] < -0.05 && weight[1].abs() < 0.01, "{weight:?}");
 }
@@ -180,7 +184,7 @@ fn poses_are_rigid_ranked_and_bring_the_sites_together() {
             assert_agrees(&pose, numbers(&entry["position"]), numbers(&entry["quaternion_xyzw"]));
 
             for absent in ["rest_pose", "sinking", "clearance", "probability", "margin", "contacts"] {
-                assert!(entry[absent].is_null(), "{absent}: gravity was not asked");
+                assert!(entry[absent].is_null(), "{absent}: the published method does not simulate");
             }
 
             let cost = &entry["cost"];
@@ -197,7 +201,7 @@ fn poses_are_rigid_ranked_and_bring_the_sites_together() {
             let index = site["index"].as_u64().unwrap() as usize;
             assert_eq!(inspected["sites"][index], *site, "as inspect says");
 
-            // Straight below, or in the hanging position itself.
+            // The centre of mass is straight below the hanging position, or in it.
             let [x, y, z] = transform(&pose, centre_of_mass);
             assert!((x - target[0]).hypot(y - target[1]) < 1e-5 && z < target[2] + 1e-5, "rank {rank}");
         }
@@ -214,12 +218,12 @@ fn the_papers_best_is_the_middle_of_the_peg() {
     shapes::assert_is_in_the_ring(site);
     let support = &best["supporter_site"];
     let [x, y, z] = numbers(&support["position"]);
-    assert!(x.abs() < PEG_LENGTH / 4.0 && y.hypot(z) < 0.001, "near the middle of the peg");
+    assert!(x.abs() < PEG_LENGTH / 4.0 && y.hypot(z) < 0.001, "not near the middle of the peg");
     let radius = number(&support["support_radius"]);
     assert!((PEG_RADIUS..1.5 * PEG_RADIUS).contains(&radius), "{radius}");
     assert_eq!(best["cost"]["collision"], 0);
 
-    // The peg goes through the ring, whose axis is y in its own frame, and the weight hangs below.
+    // The peg goes through the ring, whose axis is y in the object frame, and the weight hangs below.
     let [origin, tip, weight] =
         [[0.0; 3], [0.0, 1.0, 0.0], [0.0, 0.0, weighted_ring_centre_z()]].map(|p| transform(&pose, p));
     assert!((tip[0] - origin[0]).abs() > 0.9, "{tip:?}");
@@ -238,7 +242,7 @@ fn assert_is_rigid(m: &[f64; 16]) {
     }
     let [a, b] = [row(0), row(1)];
     let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-    assert!((dot(cross, row(2)) - 1.0).abs() < 1e-5, "no reflection");
+    assert!((dot(cross, row(2)) - 1.0).abs() < 1e-5, "a reflection: {m:?}");
 }
 
 fn assert_agrees(m: &[f64; 16], position: [f64; 3], [x, y, z, w]: [f64; 4]) {
@@ -284,7 +288,11 @@ fn a_seed_changes_the_samples_and_nothing_else() {
     let points = |seed: &str| {
         run!("inspect", mesh, "--as", "supporter", "--profile", "paper", "--seed", seed, "--json").json()
     };
-    assert_ne!(points("1")["sites"], points("2")["sites"], "a supporter's mesh is sampled, too");
+    assert_ne!(
+        points("1")["sites"],
+        points("2")["sites"],
+        "the samples of a supporter mesh depend on the seed"
+    );
 }
 
 #[test]
@@ -294,7 +302,7 @@ fn a_given_centre_of_mass_hangs_below() {
     let best = &Scene::new().predict(&options)["poses"][0];
     let rest = pose(best, "rest_pose");
     let contact = numbers::<3>(&best["contacts"][0]["position"]);
-    // About the peg: along it friction may hold it a little askew.
+    // Across the peg only: along the peg friction can hold the object askew.
     let [beside, true_beside] =
         [given, [0.0, 0.0, weighted_ring_centre_z()]].map(|p| transform(&rest, p)).map(|p| p[1] - contact[1]);
     assert!(beside.abs() < 0.006 && true_beside.abs() > 0.006, "{beside} {true_beside}");
@@ -309,11 +317,11 @@ fn a_given_centre_of_mass_hangs_below() {
     let [x, y, z] = below(given);
     assert!((x - hanging[0]).hypot(y - hanging[1]) < 1e-5 && z < hanging[2] - 0.03);
     let [x, y, _] = below([0.0, 0.0, weighted_ring_centre_z()]);
-    assert!((x - hanging[0]).hypot(y - hanging[1]) > 0.005, "the true one is beside it");
+    assert!((x - hanging[0]).hypot(y - hanging[1]) > 0.005, "the true centre of mass is not below");
 }
 
 #[test]
-fn profiles_and_params_files_are_told_back() {
+fn the_document_has_the_effective_params() {
     let scene = Scene::new();
     let file = scene.write("few.toml", "samples = 3000\nseed = 5\ncollision_weight = 0.5\n");
     let document = scene.predict(&["--profile", "paper", "--params", file.to_str().unwrap(), "--seed", "6"]);

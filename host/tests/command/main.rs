@@ -1,4 +1,4 @@
-//! The command `hangpose`, run as its users run it, on shapes whose answers are known.
+//! Runs of the command `hangpose` on shapes with known results.
 
 mod bad_input;
 mod inspect;
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-/// What a run left: exit status, standard output, standard error.
+/// Result of a run: exit status, standard output, standard error.
 struct Run {
     status: Option<i32>,
     stdout: String,
@@ -27,7 +27,7 @@ impl Run {
     }
 }
 
-/// Runs the command with arguments that are text or paths.
+/// Runs the command. The arguments are strings or paths.
 macro_rules! run {
     ($($argument:expr),* $(,)?) => {
         $crate::finish($crate::command().args([$(std::ffi::OsStr::new(AsRef::<std::ffi::OsStr>::as_ref(&$argument))),*]))
@@ -35,7 +35,7 @@ macro_rules! run {
 }
 use run;
 
-/// The published method, which has sites and costs.
+/// Options that select the published method, which has sites and costs.
 const PAPER: [&str; 2] = ["--profile", "paper"];
 
 fn command() -> Command {
@@ -48,7 +48,7 @@ fn finish(command: &mut Command) -> Run {
     Run { status: status.code(), stdout: text(stdout), stderr: text(stderr) }
 }
 
-/// The folder of the samples.
+/// Path of a sample file.
 fn sample(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples").join(name)
 }
@@ -85,7 +85,7 @@ impl Scene {
         path
     }
 
-    /// The JSON of the ring on the peg with more options.
+    /// Predicts the ring on the peg with further options and returns the JSON.
     fn predict(&self, options: &[&str]) -> Value {
         self.predict_with(&self.ring, &self.peg, options)
     }
@@ -99,7 +99,7 @@ impl Scene {
     }
 }
 
-/// The document without what a clock says.
+/// The document without measured times.
 fn timeless(mut document: Value) -> String {
     document["stats"].as_object_mut().unwrap().remove("seconds").unwrap();
     document.to_string()
@@ -114,12 +114,12 @@ fn numbers<const N: usize>(value: &Value) -> [f64; N] {
     list.try_into().unwrap_or_else(|list| panic!("{list:?} is not {N} numbers"))
 }
 
-/// How far two points are apart.
+/// Distance between two points.
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// A row-major pose times a point.
+/// Transforms a point by a row-major pose.
 fn transform(pose: &[f64; 16], p: [f64; 3]) -> [f64; 3] {
     core::array::from_fn(|i| (0..3).map(|j| pose[4 * i + j] * p[j]).sum::<f64>() + pose[4 * i + 3])
 }

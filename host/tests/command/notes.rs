@@ -1,9 +1,9 @@
-//! What is said beside the result, on standard error, and what becomes of odd normals and sizes.
+//! Notes and warnings on standard error, and the treatment of unusual normals and sizes.
 
 use super::shapes::without_normals;
 use super::*;
 
-/// What is said about the ring on `supporter`, after it was seen to hang there.
+/// Standard error of a prediction of the ring on `supporter`, which must succeed.
 fn said(scene: &Scene, supporter: &Path, options: &[&str]) -> String {
     let mut command = command();
     command.args(["predict", "--top", "1", "--json", "-", "--object"]).arg(&scene.ring);
@@ -14,7 +14,7 @@ fn said(scene: &Scene, supporter: &Path, options: &[&str]) -> String {
 }
 
 #[test]
-fn clean_input_needs_no_words() {
+fn clean_input_gives_no_messages() {
     let scene = Scene::new();
     assert_eq!(said(&scene, &scene.peg, &[]), "");
     let mesh = scene.write("peg.obj", shapes::obj(&shapes::peg_mesh()));
@@ -28,20 +28,21 @@ fn missing_normals_are_estimated() {
     let bare = scene.write("bare.xyz", shapes::xyz(&without_normals(&points)));
     let all = format!("note: {}: {n} of {n} normals were estimated", bare.display(), n = points.len());
     let text = said(&scene, &bare, &[]);
-    assert!(text.starts_with(&all) && text.contains("say --viewpoint"), "{text}");
+    assert!(text.starts_with(&all) && text.contains("pass --viewpoint"), "{text}");
 
-    // What a camera above sees: the upper half.
+    // The upper half, as a camera above sees it.
     let upper: Vec<_> = points.iter().copied().filter(|p| p[5] > -0.1).collect();
     let upper = scene.write("upper.xyz", shapes::xyz(&without_normals(&upper)));
     let text = said(&scene, &upper, &["--viewpoint", "0,0,1"]);
     assert!(text.contains("face the viewpoint") && text.lines().count() == 1, "{text}");
 
-    // From below nothing faces up: the viewpoint counts.
-    let run = run!("predict", "--object", scene.ring, "--supporter", upper, "--viewpoint", "0,0,-1");
+    // Seen from below, no normal points up.
+    let predict = ["predict", "--viewpoint", "0,0,-1", "--json", "-", "--object"];
+    let run = finish(command().args(predict).arg(&scene.ring).arg("--supporter").arg(&upper));
     assert_eq!(run.status, Some(3), "{}", run.stdout);
-    assert!(run.stdout.contains("no part that faces up"), "{}", run.stdout);
+    assert_eq!(run.json()["rejection"]["stage"], "no_support");
     let run = run!("inspect", upper, "--viewpoint=0,0,-1", "--json");
-    assert_eq!(run.json()["counts"]["contacts"], 0, "inspect takes it, too");
+    assert_eq!(run.json()["counts"]["contacts"], 0, "inspect uses the viewpoint, too");
     assert!(run.stderr.contains("face the viewpoint"));
 
     let text = said(&scene, &scene.peg, &["--viewpoint", "0,0,1"]);
@@ -69,7 +70,7 @@ fn zero_and_long_normals_are_mended() {
 }
 
 #[test]
-fn sizes_for_no_hand_name_the_likely_unit() {
+fn implausible_sizes_name_the_likely_unit() {
     let scene = Scene::new();
     let scaled = |factor: f64| {
         let (mut vertices, triangles) = shapes::weighted_ring();
@@ -81,12 +82,12 @@ fn sizes_for_no_hand_name_the_likely_unit() {
     {
         let path = scaled(factor);
         let text = run!("predict", "--object", path, "--supporter", scene.peg).stderr;
-        let end = format!("if it is in {unit}, say --object-scale {scale}\n");
+        let end = format!("if its unit is {unit}, pass --object-scale {scale}\n");
         assert!(
             text.starts_with("warning: ") && text.contains("scaled.obj") && text.ends_with(&end),
             "{text}"
         );
-        assert!(run!("inspect", path).stderr.ends_with(&format!("say --scale {scale}\n")));
+        assert!(run!("inspect", path).stderr.ends_with(&format!("pass --scale {scale}\n")));
     }
     let text =
         run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--supporter-scale", "2000").stderr;
@@ -102,11 +103,14 @@ fn a_centre_of_mass_outside_the_object_is_odd() {
         |com: &str| run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--com", com).stderr;
     assert_eq!(with("0,0,-0.07"), "");
     let text = with("0,0,-70");
-    assert!(text.contains("warning: ") && text.contains("--com is outside the object"), "{text}");
+    assert!(
+        text.contains("warning: ") && text.contains("--com is outside the object's bounding box"),
+        "{text}"
+    );
 }
 
 #[test]
-fn changes_to_a_mesh_are_told() {
+fn changes_to_a_mesh_are_reported() {
     let scene = Scene::new();
     let text = shapes::obj(&shapes::weighted_ring()) + "v 9 9 9\nf 1 1 1\n";
     let odd = scene.write("odd.obj", text);

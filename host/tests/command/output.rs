@@ -1,4 +1,4 @@
-//! Where the result goes, and what is left of what was there.
+//! Destinations of the result and the previous content of files.
 
 use super::*;
 use std::process::Stdio;
@@ -26,7 +26,7 @@ fn a_file_holds_what_a_dash_prints_and_the_table_is_shown() {
     let out = scene.path("out.json");
     let run = run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--json", out);
     assert_eq!(run.status, Some(0), "{}", run.stderr);
-    assert!(run.stdout.contains("hangs with a probability of"));
+    assert!(run.stdout.contains("hangs with probability "));
     let written = serde_json::from_slice(&std::fs::read(&out).unwrap()).unwrap();
     assert_eq!(timeless(written), timeless(scene.predict(&[])));
     assert_only(scene.folder.path(), &["ball.obj", "out.json", "peg.xyz", "ring.obj"]);
@@ -42,7 +42,7 @@ fn a_file_is_replaced_by_an_answer_and_kept_from_an_error() {
     assert_eq!((run.status, read().as_str()), (Some(1), "precious"));
     let run = run!("predict", "--object", scene.ball, "--supporter", scene.peg, "--json", out);
     assert_eq!(run.status, Some(3));
-    assert!(read().contains("no_contact_points"), "a rejection is an answer");
+    assert!(read().contains("no_contact_points"), "a rejection is written, too");
     let run = run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--json", out);
     assert_eq!(run.status, Some(0));
     assert!(read().contains("\"rejection\": null"));
@@ -55,7 +55,7 @@ fn an_input_is_not_written_over() {
     let before = std::fs::read(&scene.peg).unwrap();
     let run = run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--json", scene.peg);
     assert_eq!(run.status, Some(1));
-    assert!(run.stderr.contains("peg.xyz: is read as well") && run.stderr.contains("another file"));
+    assert!(run.stderr.contains("peg.xyz: is also an input") && run.stderr.contains("another file"));
     assert_eq!(std::fs::read(&scene.peg).unwrap(), before);
 }
 
@@ -65,14 +65,14 @@ fn a_place_that_cannot_be_written_is_found_before_the_work() {
     for out in
         [scene.path("none/out.json"), scene.folder.path().to_path_buf(), scene.path("peg.xyz/out.json")]
     {
-        // The object is missing: had the work begun, this would be the error.
+        // The object is missing, which would be the error if the computation had begun.
         let run =
             run!("predict", "--object", scene.path("none.obj"), "--supporter", scene.peg, "--json", out);
         assert_eq!((run.status, run.stdout.as_str()), (Some(1), ""));
         assert!(run.stderr.contains(out.to_str().unwrap()), "{}", run.stderr);
         assert!(run.stderr.contains("cannot be written") && run.stderr.contains("give a file"));
         let after = run.stderr.split_once(out.to_str().unwrap()).unwrap().1;
-        assert!(!after.contains(".tmp"), "the name of a temporary file would confuse: {}", run.stderr);
+        assert!(!after.contains(".tmp"), "the message names the temporary file: {}", run.stderr);
     }
 }
 
@@ -133,7 +133,7 @@ fn pipes_and_links_stay_what_they_are() {
     });
     let run = run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--json", pipe);
     assert_eq!(run.status, Some(0), "{}", run.stderr);
-    // First of all: from a pipe that was replaced the reader would wait for ever.
+    // Checked first: if the pipe had been replaced, the reader would block forever.
     assert!(std::fs::metadata(&pipe).unwrap().file_type().is_fifo());
     assert_eq!(
         timeless(serde_json::from_str(&reader.join().unwrap()).unwrap()),

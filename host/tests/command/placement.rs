@@ -1,8 +1,8 @@
-//! Units and axes: what a file's coordinates mean does not change where the object hangs.
+//! Units and axes of the files do not change the poses.
 
 use super::*;
 
-/// Turns an upright point by the least angle into a file's frame in which another axis points up.
+/// Rotates a point from the frame with z up to a frame with another up axis, by the smallest angle.
 type Turn = fn([f64; 3]) -> [f64; 3];
 
 const TURNED: [(&str, Turn); 7] = [
@@ -55,7 +55,8 @@ fn millimetres_give_the_same_poses() {
     let options =
         ["--profile", "paper", "--top", "1", "--object-scale", "0.001", "--supporter-scale", "0.001"];
     let millimetres = scene.predict_with(&object, &supporter, &options)["poses"][0].clone();
-    // The last bit of a coordinate may differ, and with it the choice among equals; not where the object hangs.
+    // The last bit of a coordinate may differ, and with it the choice among equal candidates. The site must be the
+    // same.
     for site in ["object_site", "supporter_site"] {
         let [a, b] = [&metres, &millimetres].map(|pose| numbers(&pose[site]["position"]));
         assert!(distance(a, b) < 0.002, "{site}: {a:?}, {b:?}");
@@ -65,7 +66,7 @@ fn millimetres_give_the_same_poses() {
     let in_millimetres = scene.predict_with(&object, &supporter, &options[2..]);
     shapes::assert_hangs_by_the_ring(&in_millimetres["poses"][0]);
 
-    // A scale by a power of two changes no digit.
+    // A scale by a power of two is exact.
     let (mut vertices, triangles) = shapes::weighted_ring();
     vertices.iter_mut().flatten().for_each(|x| *x *= 1024.0);
     let object = scene.write("binary.obj", shapes::obj(&(vertices, triangles)));

@@ -1,4 +1,4 @@
-//! Shapes whose sites and centres of mass follow from how they are made. Metres, z up.
+//! Shapes with known sites and centres of mass, in metres with z up.
 
 use super::{Value, distance, number, numbers};
 use std::f64::consts::{PI, TAU};
@@ -6,18 +6,20 @@ use std::fmt::Write;
 
 pub(crate) type Mesh = (Vec<[f64; 3]>, Vec<[usize; 3]>);
 
-/// The ring lies in the xz plane around the origin.
+/// Radius of the ring's centre line, which lies in the xz plane around the origin.
 pub(crate) const RING_RADIUS: f64 = 0.03;
+/// Radius of the ring's wire.
 pub(crate) const WIRE_RADIUS: f64 = 0.004;
-/// The weight below it, from its middle to each side.
+/// Half extents of the weight below the ring.
 pub(crate) const WEIGHT: [f64; 3] = [0.01, 0.004, 0.04];
-/// The middle of the weight.
+/// Height of the centre of the weight.
 pub(crate) const WEIGHT_Z: f64 = -0.08;
-/// The peg lies along x around the origin.
+/// Radius of the peg, which lies along x with its centre at the origin.
 pub(crate) const PEG_RADIUS: f64 = 0.004;
+/// Length of the peg.
 pub(crate) const PEG_LENGTH: f64 = 0.1;
 
-/// A ring with a box below it, two closed bodies.
+/// A ring and a box below it, as two closed bodies.
 pub(crate) fn weighted_ring() -> Mesh {
     let (mut vertices, mut triangles) = grid(96, 24, |u, v| {
         let (u, v) = (TAU * u, TAU * v);
@@ -29,14 +31,14 @@ pub(crate) fn weighted_ring() -> Mesh {
         let side = |axis: usize| if i >> axis & 1 == 1 { WEIGHT[axis] } else { -WEIGHT[axis] };
         vertices.push([side(0), side(1), WEIGHT_Z + side(2)]);
     }
-    // Seen from outside, anticlockwise.
+    // Counter-clockwise seen from outside.
     for [a, b, c, d] in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
         triangles.extend([[a, b, c], [a, c, d]].map(|t: [usize; 3]| t.map(|i| first + i)));
     }
     (vertices, triangles)
 }
 
-/// Asserts that the free space of a site of the weighted ring lies in the ring's hole and reaches up to the wire.
+/// Asserts that the free space of a site of the weighted ring lies in the hole of the ring and touches the wire.
 #[track_caller]
 pub(crate) fn assert_is_in_the_ring(site: &Value) {
     let reach = distance(numbers(&site["position"]), [0.0; 3]) + number(&site["free_space_radius"]);
@@ -45,7 +47,7 @@ pub(crate) fn assert_is_in_the_ring(site: &Value) {
     assert!(axis.abs() > 0.7, "through the hole: {site}");
 }
 
-/// Asserts that all that bears the weighted ring at rest is the peg, in the ring.
+/// Asserts that every contact at rest is between the ring and the top of the peg.
 #[track_caller]
 pub(crate) fn assert_hangs_by_the_ring(entry: &Value) {
     let rest = numbers::<16>(&entry["rest_pose"]);
@@ -53,7 +55,7 @@ pub(crate) fn assert_hangs_by_the_ring(entry: &Value) {
         let p @ [x, y, z] = numbers::<3>(&contact["position"]);
         assert!(x.abs() < PEG_LENGTH / 2.0 + 0.001, "{contact}");
         assert!((y.hypot(z) - PEG_RADIUS).abs() < 0.001 && z > 0.0, "on top of the peg: {contact}");
-        // Back into the object's frame.
+        // The contact in the object frame.
         let [u, v, w] =
             core::array::from_fn(|i| (0..3).map(|j| rest[4 * j + i] * (p[j] - rest[4 * j + 3])).sum::<f64>());
         let from_wire = (f64::hypot(u, w) - RING_RADIUS).hypot(v);
@@ -61,20 +63,21 @@ pub(crate) fn assert_hangs_by_the_ring(entry: &Value) {
     }
 }
 
-/// The centre of mass of the weighted ring lies on the z axis, here: Pappus' volume of the ring against the box's.
+/// Height of the weighted ring's centre of mass, which lies on the z axis: the volume of the ring is by Pappus'
+/// theorem.
 pub(crate) fn weighted_ring_centre_z() -> f64 {
     let ring = PI * WIRE_RADIUS.powi(2) * TAU * RING_RADIUS;
     let weight = 8.0 * WEIGHT.iter().product::<f64>();
     WEIGHT_Z * weight / (ring + weight)
 }
 
-/// A ball: nowhere does its surface face its middle.
+/// A ball: no part of its surface faces its centre.
 pub(crate) fn ball() -> Mesh {
     let (mut vertices, mut triangles) = grid(24, 11, |u, v| {
         let (u, v) = (TAU * u, PI * (v * 11.0 + 1.0) / 12.0);
         [0.04 * v.sin() * u.cos(), 0.04 * v.sin() * u.sin(), 0.04 * v.cos()]
     });
-    // The grid closes from the last row to the first; a ball has poles there instead.
+    // The grid joins the last row to the first; a ball has poles there.
     triangles.retain(|t| t.iter().all(|i| i % 11 != 10) || t.iter().all(|i| i % 11 != 0));
     let (north, south) = (vertices.len(), vertices.len() + 1);
     vertices.extend([[0.0, 0.0, 0.04], [0.0, 0.0, -0.04]]);
@@ -101,7 +104,7 @@ pub(crate) fn peg_mesh() -> Mesh {
         let l = (k + 1) % n;
         triangles.extend([[k, n + l, l], [k, n + k, n + l], [2 * n, k, l], [2 * n + 1, n + l, n + k]]);
     }
-    // As anticlockwise from outside.
+    // Counter-clockwise seen from outside.
     triangles.iter_mut().for_each(|t| t.reverse());
     (vertices, triangles)
 }
@@ -120,7 +123,7 @@ pub(crate) fn peg() -> Vec<[f64; 6]> {
     points
 }
 
-/// A surface over the unit square that closes on itself both ways.
+/// A surface over the unit square that is periodic in both directions.
 fn grid(m: usize, n: usize, at: impl Fn(f64, f64) -> [f64; 3]) -> Mesh {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for i in 0..m {
@@ -145,7 +148,7 @@ pub(crate) fn obj((vertices, triangles): &Mesh) -> String {
     text
 }
 
-/// Points with as many columns as they have.
+/// XYZ text with one column per number of a point.
 pub(crate) fn xyz<const N: usize>(points: &[[f64; N]]) -> String {
     let line = |p: &[f64; N]| p.map(|x| x.to_string()).join(" ") + "\n";
     points.iter().map(line).collect()

@@ -1,4 +1,4 @@
-//! The command line itself, and the table for people.
+//! Options, help and the printed table.
 
 use super::*;
 
@@ -34,7 +34,7 @@ fn wrong_usage_has_its_own_status() {
 }
 
 #[test]
-fn help_tells_of_every_option_and_status() {
+fn help_lists_every_option_and_status() {
     let run = run!("--help");
     assert_eq!(run.status, Some(0));
     assert!(["predict", "inspect", "Example: hangpose predict"].iter().all(|part| run.stdout.contains(part)));
@@ -55,7 +55,7 @@ fn the_table_says_what_was_read_and_agrees_with_the_json() {
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
     let document = scene.predict(&[]);
     let lines: Vec<&str> = run.stdout.lines().collect();
-    assert_eq!(lines[0], heading(&document, "contacts"));
+    assert_eq!(lines[0], heading(&document, "contacts", ["contact candidates"; 2]));
     let poses = document["poses"].as_array().unwrap();
     assert_eq!(lines.len(), 1 + poses.len());
     for (line, pose) in lines[1..].iter().zip(poses) {
@@ -63,7 +63,7 @@ fn the_table_says_what_was_read_and_agrees_with_the_json() {
         let tilt = numbers::<8>(&margin["tilts"]).into_iter().fold(f64::INFINITY, f64::min);
         let at_least = if tilt >= 1.2 { "at least " } else { "" };
         let words = format!(
-            "{:4}  hangs with a probability of {:.0} %: stays up to {at_least}a {:.0} degree tilt or a {:.1} m/s knock; let go, it sinks {:.1} mm, on (",
+            "{:4}  hangs with probability {:.0} %, tolerates a tilt of {at_least}{:.0} degrees or a knock of {:.1} m/s, sinks {:.1} mm after release, main contact at (",
             number(&pose["rank"]),
             100.0 * number(&pose["probability"]),
             tilt.to_degrees(),
@@ -74,15 +74,15 @@ fn the_table_says_what_was_read_and_agrees_with_the_json() {
     }
 }
 
-/// What was read, with so many sites or contacts.
-fn heading(document: &Value, places: &str) -> String {
-    let places = &document["stats"][places];
+/// First line of the table. `key` is `sites` or `contacts`.
+fn heading(document: &Value, key: &str, [object, supporter]: [&str; 2]) -> String {
+    let counts = &document["stats"][key];
     format!(
-        "object: {} triangles, closed, 68 x 8 x 154 mm, {} places to hang by; supporter: {} points, 100 x 8 x 8 mm, {} places to hang on",
+        "object: {} triangles, closed, 68 x 8 x 154 mm, {} {object}; supporter: {} points, 100 x 8 x 8 mm, {} {supporter}",
         shapes::weighted_ring().1.len(),
-        places["object"],
+        counts["object"],
         shapes::peg().len(),
-        places["supporter"],
+        counts["supporter"],
     )
 }
 
@@ -93,11 +93,11 @@ fn the_papers_table_agrees_with_the_json() {
     let mut command = command();
     command.args(["predict", "--object"]).arg(&scene.ring).arg("--supporter").arg(&scene.peg).args(&options);
     let run = finish(&mut command);
-    // No progress bar either: standard error is no terminal here.
+    // There is no progress bar either, since standard error is not a terminal here.
     assert_eq!((run.status, run.stderr.as_str()), (Some(0), ""));
     let document = scene.predict(&options);
     let lines: Vec<&str> = run.stdout.lines().collect();
-    assert_eq!(lines[0], heading(&document, "sites"));
+    assert_eq!(lines[0], heading(&document, "sites", ["hanging sites", "support sites"]));
     assert!(lines[1].trim_start().starts_with("rank    total"));
     let poses = document["poses"].as_array().unwrap();
     assert_eq!(lines.len(), 2 + poses.len());
@@ -110,7 +110,7 @@ fn the_papers_table_agrees_with_the_json() {
             ["total", "collision", "boundary", "contact_area"].map(|name| number(&cost[name]));
         let expected = [number(&pose["rank"]), total, collision, boundary, area, x, y, z, u, v, w];
         assert_eq!(row.len(), expected.len(), "{line}");
-        // As many digits as are shown.
+        // Within the rounding of the printed digits.
         assert!(row.iter().zip(expected).all(|(shown, value)| (shown - value).abs() < 0.051), "{line}");
     }
 }

@@ -1,4 +1,4 @@
-//! Each cloud format, read back.
+//! Readers of each cloud format.
 
 use crate::samples::*;
 
@@ -10,7 +10,7 @@ fn pcd_leaves_out_missing_points_in_every_encoding() {
         let cloud = cloud("scan.pcd", content).unwrap();
         assert_eq!(cloud.points, SEEN);
         assert_eq!(cloud.normals, None);
-        assert_eq!(cloud.notes, ["1 of 4 points were missing (NaN) and were left out."]);
+        assert_eq!(cloud.notes, ["1 of 4 points were missing (NaN) and were dropped."]);
     }
 }
 
@@ -27,7 +27,7 @@ fn pcd_finds_its_fields_by_name() {
     assert_eq!(cloud.points, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
     assert_eq!(cloud.normals, Some(vec![[0.0, 0.0, 1.0], [0.0; 3]]));
     let notes =
-        ["Its VIEWPOINT was not applied: the points are taken as they stand.", "1 of 2 normals are zero."];
+        ["VIEWPOINT was ignored: the points keep their coordinates in the file.", "1 of 2 normals are zero."];
     assert_eq!(cloud.notes, notes);
 }
 
@@ -77,7 +77,7 @@ fn xyz_takes_comments_separators_and_a_count() {
 }
 
 #[test]
-fn xyz_tells_colours_from_normals() {
+fn xyz_distinguishes_colours_from_normals() {
     let cloud = |content: &str| cloud("scan.xyz", content).unwrap();
     let colours = cloud("1 2 3 255 128 0\n4 5 6 1 0 0\n");
     assert_eq!((colours.points.len(), colours.normals), (2, None));

@@ -1,4 +1,4 @@
-//! Each error says what, where and how to mend it.
+//! Each error states what is wrong, where, and how to mend it.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use hangpose::files::{FileError, read_mesh, read_supporter};
 
 use crate::samples::*;
 
-/// The message begins with the path and holds these parts.
+/// Asserts that the message begins with the path and contains these parts.
 fn assert_says(error: FileError, name: &str, parts: &[&str]) {
     let message = error.to_string();
     let (path, rest) = message.split_once(": ").expect("a path first");
@@ -38,12 +38,12 @@ fn no_file_no_content_no_format() {
     bad_mesh(
         "mug.step",
         "x",
-        &["\".step\" is not a format", "known are obj, stl, ply, glb and gltf", "export"],
+        &["\".step\" is not a supported format", "supported are obj, stl, ply, glb and gltf", "export"],
     );
-    bad_mesh("mug", "x", &["the name has no extension"]);
-    bad_cloud("scan.las", "x", &["known are ply, pcd, xyz, txt and pts"]);
+    bad_mesh("mug", "x", &["the file name has no extension"]);
+    bad_cloud("scan.las", "x", &["supported are ply, pcd, xyz, txt and pts"]);
     let supporter = read_supporter(&file("rack.fbx", "x").path).unwrap_err();
-    assert_says(supporter, "rack.fbx", &["known are obj, stl, ply, glb, gltf, pcd, xyz, txt and pts"]);
+    assert_says(supporter, "rack.fbx", &["supported are obj, stl, ply, glb, gltf, pcd, xyz, txt and pts"]);
 }
 
 #[test]
@@ -53,7 +53,7 @@ fn cut_off() {
     bad_mesh(
         "a.stl",
         &cube[..500],
-        &["byte 500: the header promises 12 triangles in 684 bytes, but there are 500"],
+        &["byte 500: the header declares 12 triangles in 684 bytes, but there are 500"],
     );
     let text = stl_text_cube();
     let cut = text.find("vertex 1 1 0").unwrap() + 8;
@@ -71,24 +71,24 @@ fn cut_off() {
     bad_mesh(
         "a.ply",
         ply_text_cube().replace("4 1 3 7 5\n", ""),
-        &["promises 6 of element face, but there are 5"],
+        &["declares 6 of element face, but there are 5"],
     );
     bad_mesh("a.ply", &ply_binary_cube(false)[..300], &["cut off"]);
     bad_mesh(
         "a.glb",
         &glb_cube(r#"{"mesh":0}"#)[..600],
-        &["byte 600: the header promises ", "but there are 600"],
+        &["byte 600: the header declares ", "but there are 600"],
     );
     bad_mesh("a.gltf", &GLTF_TRIANGLE[..300], &["re-export it as glb"]);
     bad_cloud(
         "a.pcd",
         &pcd_binary()[..pcd_binary().len() - 9],
-        &["the header promises 4 points in 48 bytes, but 39 bytes follow it"],
+        &["the header declares 4 points in 48 bytes, but 39 bytes follow it"],
     );
     bad_cloud(
         "a.pcd",
         pcd_text().replace("5 6 0\n", ""),
-        &["the header promises 4 points, but 3 lines follow it"],
+        &["the header declares 4 points, but 3 lines follow it"],
     );
     bad_cloud("a.pts", "3\n1 2 3\n4 5 6\n", &["a count of 3 points, but has 2", "cut off"]);
 }
@@ -104,7 +104,7 @@ fn not_what_it_says() {
         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\nendloop\nendfacet\nendsolid\n",
         &["line 6: a facet needs three vertices, this one has 1"],
     );
-    bad_mesh("a.stl", "solid a\nfacette\n", &["line 2: did not expect \"facette\" here", "binary STL"]);
+    bad_mesh("a.stl", "solid a\nfacette\n", &["line 2: unexpected \"facette\"", "binary STL"]);
     bad_mesh("a.ply", "solid a\n", &["line 1: Expected magic number 'ply'", "check that it is a PLY"]);
     bad_mesh(
         "a.ply",
@@ -141,13 +141,17 @@ fn not_what_it_says() {
     );
     let draco = GLTF_TRIANGLE
         .replace("\"nodes\"", "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"nodes\"");
-    bad_mesh("a.gltf", draco, &["an extension that is not read here", "without mesh compression"]);
+    bad_mesh("a.gltf", draco, &["an unsupported extension", "without mesh compression"]);
     bad_cloud("a.pcd", "VERSION 0.7\nFIELDS x y z\n", &["the header: ", "save it as binary PCD"]);
     bad_cloud("a.pcd", pcd_text().replace("FIELDS x y z", "FIELDS x y w"), &["FIELDS lacks x, y or z"]);
     bad_cloud("a.pcd", pcd_text().replace("3 4 0", "3 four 0"), &["point 2 (counted from 0)"]);
     bad_cloud("a.xyz", "x y z\n1 2 3\n", &["line 1: expected a number, not \"x\"", "put # before headings"]);
-    bad_cloud("a.xyz", "1 2 3\n1 2\n", &["line 2: the points before have 3 numbers, this one has 2"]);
-    bad_cloud("a.xyz", "1 2 3 4 5\n", &["line 1: expected 3 numbers (x y z) or 6 (and a normal), found 5"]);
+    bad_cloud("a.xyz", "1 2 3\n1 2\n", &["line 2: the previous points have 3 numbers, this one has 2"]);
+    bad_cloud(
+        "a.xyz",
+        "1 2 3 4 5\n",
+        &["line 1: expected 3 numbers (x y z) or 6 (x y z and a normal), found 5"],
+    );
 }
 
 #[test]

@@ -1,10 +1,11 @@
-//! Whatever a file holds, a reader answers: soon, without a panic, and without reserving what a header merely claims.
+//! On any content a reader returns soon, without a panic, and without reserving memory that only a header claims.
 
 use std::fs;
 use std::time::{Duration, Instant};
 
 use hangpose::files::{SupporterFile, read_cloud, read_mesh, read_supporter};
 
+use crate::random::Random;
 use crate::samples::*;
 
 fn samples() -> Vec<(&'static str, Vec<u8>)> {
@@ -25,7 +26,7 @@ fn samples() -> Vec<(&'static str, Vec<u8>)> {
     ]
 }
 
-/// Reads it in every way; what is read keeps its promises.
+/// Writes `content` to the file, reads it with every reader, and checks the guarantees of the result.
 fn read(file: &File, content: &[u8]) {
     fs::write(&file.path, content).unwrap();
     let finite = |points: &[[f32; 3]]| points.as_flattened().iter().all(|x| x.is_finite());
@@ -53,21 +54,13 @@ fn read(file: &File, content: &[u8]) {
     }
 }
 
-/// The most memory this process ever asked for, where the system tells.
+/// Asserts a bound on the peak virtual memory of the process, where the system reports it.
 fn assert_modest_memory() {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let peak = status
         .lines()
         .find_map(|line| line.strip_prefix("VmPeak:")?.trim().strip_suffix(" kB")?.parse().ok());
     assert!(peak.unwrap_or(0_u64) < 2_000_000, "{peak:?} kB");
-}
-
-/// Steele, Lea and Flood's splitmix64.
-fn random(state: &mut u64) -> u64 {
-    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let z = (*state ^ (*state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
 
 #[test]
@@ -83,15 +76,15 @@ fn cut_anywhere() {
 
 #[test]
 fn bytes_flipped() {
-    let mut state = 1;
+    let mut random = Random(1);
     for (name, content) in samples() {
         let file = file(name, "");
         for _ in 0..700 {
             let mut content = content.clone();
-            for _ in 0..=random(&mut state) % 4 {
-                let at = random(&mut state) as usize % content.len();
-                // Half of them as a digit or a sign, which does more to text.
-                content[at] = match random(&mut state) {
+            for _ in 0..=random.next() % 4 {
+                let at = random.next() as usize % content.len();
+                // Half of them become a digit or a sign, which has more effect on text.
+                content[at] = match random.next() {
                     r if r % 2 == 0 => (r >> 8) as u8,
                     r => b"0123456789-. "[(r >> 8) as usize % 13],
                 };
@@ -110,8 +103,8 @@ fn the_format_is_another() {
         for (_, content) in &all {
             read(&file, content);
         }
-        let mut state = 7;
-        read(&file, &(0..4096).map(|_| random(&mut state) as u8).collect::<Vec<_>>());
+        let mut random = Random(7);
+        read(&file, &(0..4096).map(|_| random.next() as u8).collect::<Vec<_>>());
         read(&file, &[0; 4096]);
     }
 }

@@ -1,4 +1,4 @@
-//! Each mesh format, read back.
+//! Readers of each mesh format.
 
 use hangpose::files::{SupporterFile, read_mesh, read_supporter};
 
@@ -53,7 +53,8 @@ fn a_text_stl_may_hold_several_solids_and_odd_normals() {
 
 #[test]
 fn obj_merges_groups_and_knows_every_form_of_corner() {
-    // The cube with negative indices, textures, normals, colours, a weight, a carried line, a polyline and an old code page.
+    // The cube with negative indices, textures, normals, colours, a weight, a continued line, a polyline and an old
+    // code page.
     let content = b"mtllib missing.mtl\no \xfc\nv 0 0 0 0.5 0.5 0.5\nv 1 0 0\nv 0 1 0\nv 1 1 0\n\
         v 0 0 1\nv 2 0 2 2\nv 0 1 1\nv 1 1 1\nvt 0.5\nvt 0 0\nvn 0 0 1\n\
         g\nusemtl\nl 1 2 3\np 1\nf 1 3 4 2\ng one two\ns 1\nf -4 -3 -1 -2\no other\nf 1/1 2/1 6/2 5/2\n\
@@ -70,8 +71,8 @@ fn vertices_at_the_same_place_are_joined_and_unused_ones_left_out() {
     assert_eq!(mesh.vertices, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]]);
     assert_eq!(mesh.triangles, [[0, 1, 2], [1, 3, 2]]);
     let notes = [
-        "6 vertices stand at 4 places and were joined.",
-        "1 of 7 vertices belong to no face and were left out.",
+        "6 vertices at 4 distinct positions were merged.",
+        "1 of 7 vertices belong to no face and were dropped.",
     ];
     assert_eq!(mesh.notes, notes);
 }
@@ -87,7 +88,7 @@ fn faces_with_repeated_vertices_are_dropped_but_thin_ones_kept() {
 
 #[test]
 fn glb_applies_the_transforms_of_all_nodes() {
-    // A quarter turn about z and twice the size, then ten along x: (1, 0, 0) goes to (10, 2, 0).
+    // A quarter turn about z, a scale of 2, then a translation by 10 along x: (1, 0, 0) goes to (10, 2, 0).
     let nodes = r#"{"translation":[10,0,0],"children":[1]},
         {"rotation":[0,0,0.70710678,0.70710678],"scale":[2,2,2],"mesh":0}"#;
     let turned = mesh("turned.glb", glb_cube(nodes)).unwrap();
@@ -98,13 +99,13 @@ fn glb_applies_the_transforms_of_all_nodes() {
         assert!(read.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-5), "{read:?} {expected:?}");
     }
 
-    // A matrix, column by column, that mirrors x: the surface must not turn inside out.
+    // A column-major matrix that mirrors x: the surface must not turn inside out.
     let mirrored =
         mesh("mirrored.glb", glb_cube(r#"{"matrix":[-1,0,0,0,0,1,0,0,0,0,1,0,5,0,0,1],"mesh":0}"#)).unwrap();
     assert!((volume(&mirrored) - 1.0).abs() < 1e-9);
     assert!(mirrored.vertices.contains(&[5.0, 0.0, 0.0]) && mirrored.vertices.contains(&[4.0, 1.0, 1.0]));
 
-    // One mesh, two nodes, one of them without a scene to itself.
+    // Two nodes use one mesh; the second is a child of the first.
     let two =
         mesh("two.glb", glb_cube(r#"{"mesh":0,"children":[1]},{"mesh":0,"translation":[0,0,3]}"#)).unwrap();
     assert_eq!(two.triangles.len(), 24);
@@ -152,7 +153,7 @@ fn gltf_strips_fans_and_unindexed_triangles() {
     assert_eq!(strip.triangles, [[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4]]);
     assert_eq!(
         (area(&strip), strip.notes),
-        (2.0, vec!["1 primitives are points or lines and were left out.".to_string()])
+        (2.0, vec!["1 primitives are points or lines and were ignored.".to_string()])
     );
     assert_eq!(read(6, 4).triangles, [[0, 1, 2], [0, 2, 3]]);
     assert_eq!(read(4, 6).triangles, [[0, 1, 2], [3, 4, 5]]);

@@ -1,11 +1,11 @@
-//! Polygons of every shape become triangles that cover them, the right way round.
+//! Triangulations cover polygons of every shape and keep their winding order.
 
 use crate::samples::*;
 
 /// An L of area 3 in the plane, counter-clockwise.
 const L: [[f32; 2]; 6] = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
 
-/// An OBJ of the prism of height one over a polygon, its axis along z turned by `turn`.
+/// An OBJ of the prism of height 1 over a polygon, with `turn` applied to its vertices.
 fn prism(polygon: &[[f32; 2]], turn: impl Fn([f32; 3]) -> [f32; 3]) -> String {
     let n = polygon.len();
     let mut out = String::new();
@@ -82,7 +82,7 @@ fn a_dart_is_cut_along_its_inner_diagonal_whichever_corner_is_first() {
 
 #[test]
 fn a_star_with_many_points_keeps_its_area() {
-    // 100 corners on two circles in turn: 100 triangles of sin(2 pi / 100) / 2 times both radii.
+    // 100 corners alternate between two circles: 100 triangles of area sin(2 pi / 100) / 2 times both radii.
     let star: Vec<[f32; 2]> = (0..100)
         .map(|i| {
             let (s, c) = (std::f32::consts::TAU * i as f32 / 100.0).sin_cos();

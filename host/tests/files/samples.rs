@@ -1,4 +1,4 @@
-//! Small files, made from the letter of each format, and measures of what was read from them.
+//! Small files written by the specification of each format, and measures of the meshes read from them.
 
 use std::collections::HashMap;
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use hangpose::files::{CloudFile, FileError, MeshFile, read_cloud, read_mesh};
 use tempfile::TempDir;
 
-/// The unit cube: corner `i` has the bits of `i` as x, y and z.
+/// Corners of the unit cube: the bits of `i` are x, y and z of corner `i`.
 pub(crate) const CUBE: [[f32; 3]; 8] = [
     [0.0, 0.0, 0.0],
     [1.0, 0.0, 0.0],
@@ -19,7 +19,7 @@ pub(crate) const CUBE: [[f32; 3]; 8] = [
     [1.0, 1.0, 1.0],
 ];
 
-/// Its sides, counter-clockwise from outside.
+/// Sides of the unit cube, counter-clockwise seen from outside.
 pub(crate) const SIDES: [[u32; 4]; 6] =
     [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 
@@ -27,7 +27,7 @@ pub(crate) fn cube_triangles() -> Vec<[u32; 3]> {
     SIDES.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect()
 }
 
-/// A file in a directory of its own, gone when dropped.
+/// A file in its own temporary directory, deleted on drop.
 pub(crate) struct File {
     _directory: TempDir,
     pub(crate) path: PathBuf,
@@ -52,12 +52,12 @@ pub(crate) fn area(mesh: &MeshFile) -> f64 {
     corners(mesh).map(|[a, b, c]| length(cross(minus(b, a), minus(c, a))) / 2.0).sum()
 }
 
-/// Positive if the triangles are counter-clockwise from outside.
+/// Signed volume, positive if the triangles are counter-clockwise seen from outside.
 pub(crate) fn volume(mesh: &MeshFile) -> f64 {
     corners(mesh).map(|[a, b, c]| dot(a, cross(b, c)) / 6.0).sum()
 }
 
-/// Each edge is used once in either direction.
+/// Whether each edge is used once in each direction.
 pub(crate) fn is_closed(mesh: &MeshFile) -> bool {
     let mut edges = HashMap::new();
     for t in &mesh.triangles {
@@ -163,14 +163,14 @@ pub(crate) fn ply_binary_cube(big_endian: bool) -> Vec<u8> {
     out
 }
 
-/// The cube's buffer: 8 positions, then 36 indices of two bytes.
+/// Buffer of the cube: 8 positions, then 36 two-byte indices.
 pub(crate) fn gltf_cube_buffer() -> Vec<u8> {
     let positions = CUBE.as_flattened().iter().flat_map(|x| x.to_le_bytes());
     let indices = cube_triangles().into_iter().flatten().flat_map(|i| (i as u16).to_le_bytes());
     positions.chain(indices).collect()
 }
 
-/// glTF around `gltf_cube_buffer`, with these nodes and this key for the buffer.
+/// glTF JSON for `gltf_cube_buffer`, with these nodes and this key of the buffer.
 pub(crate) fn gltf_cube_json(nodes: &str, buffer: &str) -> String {
     format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{nodes}],
@@ -201,7 +201,7 @@ pub(crate) fn glb_cube(nodes: &str) -> Vec<u8> {
     glb(&gltf_cube_json(nodes, ""), &gltf_cube_buffer())
 }
 
-/// Indices 0 1 2, two bytes of padding, then (0 0 0) (1 0 0) (0 1 0).
+/// glTF with a data URI: indices 0 1 2, two bytes of padding, then (0 0 0) (1 0 0) (0 1 0).
 pub(crate) const GLTF_TRIANGLE: &str = r#"{"asset":{"version":"2.0"},"nodes":[{"mesh":0}],
     "meshes":[{"primitives":[{"attributes":{"POSITION":1},"indices":0}]}],
     "buffers":[{"uri":"data:application/octet-stream;base64,AAABAAIAAAAAAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAAAAAACAPwAAAAA=","byteLength":44}],
@@ -234,7 +234,7 @@ pub(crate) fn pcd_binary() -> Vec<u8> {
     out
 }
 
-/// Column after column, packed by LZF: runs as they are, then one run of zeros told by reference.
+/// Column-major and compressed by LZF: literal runs, then one back reference to a run of zeros.
 pub(crate) fn pcd_compressed() -> Vec<u8> {
     let column = |k: usize| PCD_POINTS.iter().flat_map(|p| p[k].to_le_bytes()).collect::<Vec<u8>>();
     let mut packed = Vec::new();
@@ -242,7 +242,7 @@ pub(crate) fn pcd_compressed() -> Vec<u8> {
         packed.push(15);
         packed.extend(column(k));
     }
-    // A literal zero; then, in the long form, 15 bytes (2 + 7 + 6) from one byte back.
+    // A literal zero, then a long back reference: 15 bytes (2 + 7 + 6) from one byte back.
     packed.extend([0, 0, 7 << 5, 6, 0]);
     let mut out = pcd_header("x y z", 4, "binary_compressed").into_bytes();
     out.extend((packed.len() as u32).to_le_bytes());

@@ -1,4 +1,4 @@
-//! The distance field of a whole object against the mesh that it is made of.
+//! The distance field of an object, compared with its mesh.
 
 use crate::random::Random;
 use crate::truth::double;
@@ -8,16 +8,16 @@ use hangpose_core::{Monitor, Params};
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
 
-/// How far off the field may be within its band, in voxels: about half of one at sharp edges and thin walls, says its
-/// documentation; ...
+/// Bound on the error within the band, in voxels. The documented error is about half a voxel at sharp edges and thin
+/// walls.
 const WITHIN_BAND: f32 = 0.6;
-/// ... and elsewhere a few hundredths: the share of places where it may be off by more than a tenth. 0.10 was found on the scissors,
-/// which are all edges.
+/// Bound on the share of points in the band with an error above 0.1 voxels. Away from edges the error is a few
+/// hundredths of a voxel; 0.10 was found on the scissors, which are all edges.
 const SELDOM: f64 = 0.15;
-/// What rounding may add beyond the band, in voxels.
+/// Bound on the overestimate beyond the band, in voxels, which allows for rounding.
 const ROUNDING: f32 = 1e-3;
 
-/// The largest errors, in voxels.
+/// Largest errors, in voxels, and numbers of points.
 #[derive(Debug, Default)]
 struct Worst {
     within: f32,
@@ -52,7 +52,7 @@ fn check(name: &str, field: &DistanceField, surface: &Surface, place: &mut dyn F
         }
     }
     eprintln!("{name}: voxel {voxel}: {worst:?}");
-    assert!(worst.near > 2000 && worst.far > 2000, "both were tried");
+    assert!(worst.near > 2000 && worst.far > 2000, "too few points near or far from the surface");
     assert!((worst.seldom as f64) < SELDOM * worst.near as f64, "{name}: {worst:?}");
 }
 
@@ -73,10 +73,10 @@ fn the_field_of_the_samples_is_their_distance() {
             let corners = triangle.map(|vertex| double(file.vertices[vertex as usize]));
             let on_mesh = random.on_triangle(corners);
             let exact = match i % 4 {
-                // In the box, around it, ...
+                // In the bounding box, or around it.
                 0 => middle + random.in_cube().component_mul(&extents) * 0.5,
                 1 => middle + random.in_cube() * extents.norm(),
-                // ... and about a voxel and a few off the mesh.
+                // Within one voxel or a few voxels of the mesh.
                 2 => on_mesh + random.in_cube() * f64::from(field.voxel_size()),
                 _ => on_mesh + random.in_cube() * f64::from(5.0 * field.voxel_size()),
             };

@@ -1,7 +1,7 @@
-//! Meshes as they come from files: of several bodies, open, with doubled faces and needles.
+//! Meshes from files, which may have several bodies, openings, duplicate faces and needle triangles.
 //!
-//! The environment variable `HANGPOSE_MESHES` names a directory with any; every mesh below it is tried. Without it the
-//! repository's own samples are.
+//! The environment variable `HANGPOSE_MESHES` names a directory; every mesh below it is checked. The default is the
+//! samples of the repository.
 
 use crate::random::Random;
 use crate::shapes::Shape;
@@ -10,10 +10,10 @@ use crate::{rays, surface};
 use hangpose::files::{read_cloud, read_mesh};
 use std::path::{Path, PathBuf};
 
-/// The largest extent that each mesh is scaled to, m; files have no unit.
+/// Largest extent of each mesh after scaling, m; files have no unit.
 const EXTENT: f32 = 0.2;
 
-/// The meshes below a directory, sorted.
+/// Paths of the meshes below a directory, sorted.
 fn meshes_below(directory: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(directory).unwrap().map(Result::unwrap) {
@@ -53,7 +53,7 @@ fn meshes_from_files_agree_with_parry() {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples")
     });
     if !directory.is_dir() {
-        eprintln!("{} is no directory: nothing checked", directory.display());
+        eprintln!("{} is not a directory: nothing was checked", directory.display());
         return;
     }
     let mut random = Random(4);

@@ -1,8 +1,8 @@
-//! The core's queries against parry3d in double precision, which sees the same `f32` vertices but rounds 2^29 times
-//! finer, and against brute force. A difference is the core's error.
+//! Compares the core's queries with brute force and with parry3d in double precision, which sees the same `f32`
+//! vertices but rounds 2^29 times finer. A difference is an error of the core.
 //!
-//! Errors are stated in roundings: `f32::EPSILON` times the largest coordinate or distance that takes part. That is
-//! what `f32` can tell apart there, so a bound of a few holds at every scale and offset.
+//! The unit of errors is a rounding: `f32::EPSILON` times the largest coordinate or distance in the computation. This
+//! is the resolution of `f32` there, so that one bound of a few roundings holds at every scale and offset.
 
 mod field;
 mod files;

@@ -1,4 +1,4 @@
-//! Neighbours among points, against brute force in double precision.
+//! Neighbour queries, compared with brute force in double precision.
 
 use crate::random::Random;
 use crate::truth::double;
@@ -8,11 +8,11 @@ use hangpose_core::memory::Limits;
 use hangpose_core::{Monitor, Params};
 use nalgebra::{Point3, Vector3};
 
-/// How far the square of a distance may be from the truth, in `f32::EPSILON`s of itself: three differences, three
-/// products and two sums round half of one each.
+/// Bound on the relative error of a squared distance, in `f32::EPSILON`. Three differences, three products and two sums
+/// each round by half of one.
 const SQUARE: f64 = 4.0;
 
-/// Points of a kind that trees have trouble with.
+/// Point sets that are difficult for trees.
 fn clouds(random: &mut Random) -> Vec<(&'static str, Vec<[f32; 3]>)> {
     let mut cloud = |count: usize, point: &mut dyn FnMut(usize, &mut Random) -> Vector3<f64>| {
         (0..count).map(|i| point(i, random).cast::<f32>().into()).collect::<Vec<[f32; 3]>>()
@@ -35,7 +35,7 @@ fn clouds(random: &mut Random) -> Vec<(&'static str, Vec<[f32; 3]>)> {
 }
 
 fn with_tree(points: &[[f32; 3]], check: impl FnOnce(&PointTree)) {
-    // Given normals, pointing down, leave nothing to estimate and nothing to hang on.
+    // With normals that point down there is nothing to estimate and no support site.
     let normals = vec![[0.0, 0.0, -1.0]; points.len()];
     let limits = Limits::of_points(points.len());
     let mut memory = vec![0; Supporter::bytes(&limits)];
@@ -44,7 +44,7 @@ fn with_tree(points: &[[f32; 3]], check: impl FnOnce(&PointTree)) {
     check(supporter.points());
 }
 
-/// Squares of the distances of all points, in the tree's order.
+/// Squared distances of all points, in the order of the tree.
 fn squares(tree: &PointTree, query: &Point) -> Vec<f64> {
     tree.points().iter().map(|p| (p.cast::<f64>() - query.cast()).norm_squared()).collect()
 }
@@ -57,7 +57,7 @@ fn check(name: &str, tree: &PointTree, query: &Point) {
     let squares = squares(tree, query);
     let mut sorted = squares.clone();
     sorted.sort_by(f64::total_cmp);
-    // Each found point is at the distance that is said, and no closer one was left out.
+    // Each neighbour is at the returned distance, and no closer point is missing.
     let is_right = |n: &Neighbour, expected: f64| {
         let square = f64::from(n.distance_squared);
         is_close(square, squares[n.index as usize]) && is_close(square, expected)

@@ -1,17 +1,12 @@
-//! Numbers that are the same in every run: SplitMix64 (Steele, Lea and Flood 2014).
+//! Random points and directions.
 
+#[path = "../random/mod.rs"]
+mod generator;
+
+pub(crate) use generator::Random;
 use nalgebra::{Point3, Vector3};
 
-pub(crate) struct Random(pub(crate) u64);
-
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
     /// Uniform in [0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64

@@ -1,9 +1,9 @@
-//! Rays.
+//! Ray casts.
 //!
-//! A hit need not be parry's to be right: where a ray passes by an edge, one rounding decides. So it is asked of
-//! every hit that it is on the mesh, and of every ray that nothing in front of its hit was missed which the ray meets
-//! by more than a rounding. At an angle to the surface, roundings move the hit farther along the ray: by one over the
-//! cosine of that angle. From inside a closed mesh, edge or not, every ray must hit.
+//! A hit can differ from parry's and be correct, because one rounding decides which side of an edge a ray passes. The
+//! tests therefore require that every hit is on the mesh, and that no triangle in front of the hit is missed that the
+//! ray meets farther than a few roundings from its border. On an oblique ray a rounding moves the hit by 1 / cos of the
+//! angle to the normal. From inside a closed mesh every ray must hit, even at an edge.
 
 use crate::random::Random;
 use crate::shapes::{self, Shape};
@@ -11,11 +11,11 @@ use crate::truth::Truth;
 use hangpose_core::geometry::{Point, Surface, Vector};
 use nalgebra::{Point3, Vector3};
 
-/// How far off the mesh a hit may be, and how far behind the truth at right angles, in roundings; 1.5 and 1.3 were
-/// found. A dozen operations round on the way, seldom in the same direction.
+/// Bound on the distance of a hit from the mesh, and behind parry's hit along the normal, in roundings. 1.5 and 1.3
+/// were found. A dozen operations round, seldom in the same direction.
 const BOUND: f64 = 4.0;
 
-/// The largest errors, in roundings.
+/// Largest errors, in roundings, and numbers of rays.
 #[derive(Debug, Default)]
 pub(crate) struct Worst {
     off: f64,
@@ -24,7 +24,7 @@ pub(crate) struct Worst {
     hits: usize,
 }
 
-/// Rays on one mesh.
+/// Checks of rays on one mesh.
 struct Check<'a> {
     name: &'a str,
     surface: &'a Surface<'a>,
@@ -38,12 +38,12 @@ impl Check<'_> {
         self.cast(origin.cast(), (target - origin).normalize().cast(), 0.0);
     }
 
-    /// Checks a ray and returns whether it hits; what parry finds closer than `skip` need not be hit.
+    /// Checks a ray and returns whether it hits. It may miss what parry hits closer than `skip`.
     fn cast(&mut self, origin: Point, direction: Vector, skip: f64) -> bool {
         let ours = self.surface.closest_hit(&origin, &direction);
         let any = self.surface.any_hit(&origin, &direction);
         assert_eq!(any, ours.is_some(), "{}: {origin} {direction}", self.name);
-        // The oracle starts from the same rounded numbers.
+        // The reference starts from the same rounded numbers.
         let (start, along) = (origin.cast::<f64>(), direction.cast::<f64>());
         let rounding = self.truth.rounding_of_distances(&start);
         self.worst.rays += 1;
@@ -70,7 +70,7 @@ impl Check<'_> {
         any
     }
 
-    /// `count` rays of each kind that any mesh must stand.
+    /// Casts `count` rays of each kind on any mesh.
     fn any_mesh(&mut self, random: &mut Random, count: usize) {
         let (middle, size) = (nalgebra::center(&self.truth.low, &self.truth.high), self.truth.size());
         for _ in 0..count {
@@ -78,25 +78,25 @@ impl Check<'_> {
             let on_mesh = random.on_triangle(corners);
             let around = middle + random.in_cube() * size;
             let close = middle + random.in_cube().component_mul(&(self.truth.high - self.truth.low)) * 0.5;
-            // Anywhere, at the mesh, and exactly at a vertex or the middle of an edge.
+            // In a random direction, at the mesh, and exactly at a vertex or the middle of an edge.
             self.cast(around.cast(), random.direction().cast(), 0.0);
             for origin in [around, close] {
                 self.aim(origin, on_mesh);
                 self.aim(origin, corners[0]);
                 self.aim(origin, nalgebra::center(&corners[0], &corners[1]));
             }
-            // Along an axis, through a vertex; in the plane of faces where they are square to the axes.
+            // Along an axis through a vertex, which lies in the plane of axis-aligned faces.
             let axis = Vector::ith(random.below(3), if random.unit() < 0.5 { 1.0 } else { -1.0 });
             let distance = random.unit() * size;
             self.cast(corners[0].cast() - axis * distance as f32, axis, 0.0);
-            // From the mesh, up to rounding.
+            // From the mesh itself, up to rounding.
             let skip = 4.0 * BOUND * self.truth.rounding(&on_mesh);
             self.cast(on_mesh.cast(), random.direction().cast(), skip);
             self.cast(corners[0].cast(), random.direction().cast(), skip);
         }
     }
 
-    /// `count` rays of each kind from the inside of a closed mesh, which must all hit.
+    /// Casts `count` rays of each kind from the inside of a closed mesh, which must all hit.
     fn closed_mesh(&mut self, random: &mut Random, count: usize) {
         let (middle, extents) =
             (nalgebra::center(&self.truth.low, &self.truth.high), self.truth.high - self.truth.low);
@@ -104,7 +104,7 @@ impl Check<'_> {
         while left > 0 {
             let origin: Point = (middle + random.in_cube().component_mul(&extents) * 0.5).cast();
             let exact = origin.cast();
-            // Not so close to the mesh that a rounding takes it outside.
+            // Farther from the mesh than rounding errors, so that the origin is surely inside.
             if self.truth.is_inside(&exact) != Some(true)
                 || self.truth.distance(&exact) < 4.0 * BOUND * self.truth.rounding(&exact)
             {

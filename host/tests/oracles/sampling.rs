@@ -1,4 +1,4 @@
-//! Samples of a surface: on it, with its normals, evenly spread.
+//! Surface samples lie on the surface, have its normals, and are evenly spread.
 
 use crate::random::Random;
 use crate::shapes::{self, Shape};
@@ -18,12 +18,12 @@ fn area_normal(&[a, b, c]: &[Point3<f64>; 3]) -> Vector3<f64> {
     (b - a).cross(&(c - a)) / 2.0
 }
 
-/// The largest radius that `count` disks on a plane of this area can have (Yuksel 2015, section 3.1).
+/// Largest radius of `count` disks on a plane of this area (Yuksel 2015, section 3.1).
 fn r_max(area: f64, count: usize) -> f64 {
     (area / (2.0 * 3_f64.sqrt() * count as f64)).sqrt()
 }
 
-/// For each point, how far the closest other one is.
+/// Distance of each point to the closest other point.
 fn spacing(points: &[Point]) -> impl Iterator<Item = f64> {
     points.iter().enumerate().map(|(i, p)| {
         let others = points.iter().enumerate().filter(|(j, _)| *j != i);
@@ -33,9 +33,10 @@ fn spacing(points: &[Point]) -> impl Iterator<Item = f64> {
 
 #[test]
 fn samples_are_on_the_mesh_and_have_the_normals_of_its_triangles() {
-    /// A sample is a sum of three products, which round the largest coordinate half a dozen times by a half.
+    /// Bound on the distance from the surface, in roundings: a sum of three products rounds half a dozen times by a
+    /// half.
     const OFF: f64 = 4.0;
-    /// A normal is a cross product of edges: a few roundings over the triangle's width.
+    /// Bound on the error of a normal times the aspect ratio: a cross product of edges has an error of a few roundings.
     const NORMAL: f64 = 8.0 * f32::EPSILON as f64;
     for shape in shapes::all_places() {
         let truth = Truth::of(&shape);
@@ -45,7 +46,7 @@ fn samples_are_on_the_mesh_and_have_the_normals_of_its_triangles() {
             let rounding = truth.rounding(&exact);
             let off = truth.distance(&exact);
             assert!(off < OFF * rounding, "{}: {point} is off by {off}", shape.name);
-            // Of some triangle that the sample may be on: where they meet there are several.
+            // Where triangles meet, the sample may lie on any of several.
             let is_normal_of = |corners: &[Point3<f64>; 3]| {
                 let exact_normal = area_normal(corners);
                 let longest = (0..3).map(|i| (corners[i] - corners[(i + 1) % 3]).norm()).fold(0.0, f64::max);
@@ -61,19 +62,19 @@ fn samples_are_on_the_mesh_and_have_the_normals_of_its_triangles() {
 
 #[test]
 fn samples_of_a_plane_keep_their_distance_and_leave_no_hole() {
-    // One square of the open box's five, of 1 m²: a plane.
+    // One side of the open box: a plane of 1 m².
     let mut shape = shapes::cube(8, true);
     shape.triangles.truncate(2 * 8 * 8);
     for count in [500, 2000] {
         for seed in 0..3 {
             let (points, _) = samples_of(&shape, count, seed);
             let widest = 2.0 * r_max(1.0, count);
-            // Yuksel reports 0.6 to 0.75 of what the best packing has.
+            // Yuksel reports 0.6 to 0.75 of the spacing of the best packing.
             let least = spacing(&points).fold(f64::INFINITY, f64::min);
             assert!(least > 0.6 * widest, "{count} {seed}: {}", least / widest);
-            // A place farther from all samples than they are from each other could have had one of its own. The best
-            // packing leaves 0.58 of its spacing; one chosen from scattered candidates has gaps where these have: up to
-            // 1.03 was found.
+            // A point farther from all samples than their spacing could hold another sample. The best packing leaves
+            // gaps of 0.58 of its spacing. Samples chosen from random candidates inherit the gaps of these: up to 1.03
+            // was found.
             let mut random = Random(seed);
             for _ in 0..2000 {
                 let place = Point::new(0.5, random.unit() as f32 - 0.5, random.unit() as f32 - 0.5);
@@ -84,17 +85,17 @@ fn samples_of_a_plane_keep_their_distance_and_leave_no_hole() {
     }
 }
 
-/// Chi-squared over cells of the same area, whichever triangles they are cut into: no part gets more than its share.
+/// Chi-squared test over cells of equal area, which are divided into different numbers of triangles.
 #[test]
 fn every_part_of_the_surface_is_as_likely() {
-    // A box with coarse sides and one that is finely divided: 2 to 5000 triangles a side.
+    // A box with five coarse sides and one finely divided side: 2 and 5000 triangles per side.
     let fine = shapes::cube(50, false);
     let mut shape = shapes::cube(1, false);
     let base = shape.vertices.len() as u32;
     shape.vertices.extend(&fine.vertices);
     shape.triangles.splice(..2, fine.triangles[..5000].iter().map(|t| t.map(|v| v + base)));
     shape.bodies = vec![shape.triangles.len()];
-    // Each side is cut into 2 by 2 cells.
+    // Each side has 2 by 2 cells.
     let (runs, count) = (40, 600);
     let mut counts = [0_u32; 24];
     for seed in 0..runs {
@@ -109,7 +110,7 @@ fn every_part_of_the_surface_is_as_likely() {
     }
     let expected = runs as f64 * count as f64 / 24.0;
     let chi_squared: f64 = counts.iter().map(|&n| (f64::from(n) - expected).powi(2) / expected).sum();
-    // The 99.9 % quantile for 23 degrees of freedom, if samples were drawn one by one; evenly spread ones vary less. Without
-    // a random place for each candidate the fine side had a third less than the others: 483.
+    // The 99.9 % quantile for 23 degrees of freedom for independent samples; evenly spread samples vary less. Without a
+    // random position for each candidate the fine side had a third fewer samples than the others: 483.
     assert!(chi_squared < 49.7, "{chi_squared}: {counts:?}");
 }

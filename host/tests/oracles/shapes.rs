@@ -1,4 +1,4 @@
-//! Shapes that try the queries, about 1 m wide around the origin unless a test scales and moves them.
+//! Test shapes for the queries, about 1 m wide around the origin unless a test scales and moves them.
 
 use crate::random::Random;
 use hangpose::analyze_object;
@@ -13,7 +13,7 @@ pub(crate) struct Shape {
     pub(crate) name: String,
     pub(crate) vertices: Vec<[f32; 3]>,
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// Where in `triangles` each body ends.
+    /// End of each body in `triangles`.
     pub(crate) bodies: Vec<usize>,
     /// Whether every body bounds a volume.
     pub(crate) is_closed: bool,
@@ -38,7 +38,7 @@ impl Shape {
         Mesh::new(&self.vertices, &self.triangles).unwrap()
     }
 
-    /// Scaled, then moved, then rounded to `f32` again.
+    /// The shape scaled, then translated, then rounded to `f32`.
     pub(crate) fn placed(&self, scale: f64, offset: Vector3<f64>) -> Self {
         let place = |v: &[f32; 3]| (Vector3::from(*v).cast() * scale + offset).cast::<f32>().into();
         Self {
@@ -66,9 +66,9 @@ impl Shape {
         self
     }
 
-    /// Builds the core's surface, by the way that users go.
+    /// Builds the core's surface through the public interface.
     pub(crate) fn with_surface<R>(&self, check: impl FnOnce(&Surface) -> R) -> R {
-        // No distance field and few samples: the tests query only the mesh.
+        // Few samples and no distance field, since only the surface is used.
         let params = Params { samples: 100, ..Params::paper() };
         let (mesh, mut memory) = (self.mesh(), Vec::new());
         check(analyze_object(&mesh, &params, &mut memory, &Monitor::new()).unwrap().surface())
@@ -79,7 +79,7 @@ fn turn(step: u32, steps: u32) -> (f64, f64) {
     (TAU * f64::from(step) / f64::from(steps)).sin_cos()
 }
 
-/// `rows` rings of `columns` vertices joined by quads, and the first to the last if `wrap`.
+/// `rows` rings of `columns` vertices joined by quads; `wrap` joins the last ring to the first.
 fn band(
     name: &str,
     [rows, columns]: [u32; 2],
@@ -99,7 +99,7 @@ fn band(
     Shape::new(name, vertices, triangles, wrap)
 }
 
-/// Closes a band with a fan over its first and last ring.
+/// Closes a band with fans over its first and last ring.
 fn capped(mut shape: Shape, columns: u32) -> Shape {
     let rings = shape.vertices.len() as u32 - columns;
     for (first, flip) in [(0, false), (rings, true)] {
@@ -131,11 +131,11 @@ pub(crate) fn ball() -> Shape {
         let ((si, ci), (sj, cj)) = (turn(i + 1, 2 * (rows + 1)), turn(j, columns));
         Vector3::new(0.5 * si * cj, 0.5 * si * sj, 0.5 * ci)
     });
-    // The caps' fans lie flat on the last rings: a ball with two small flats.
+    // The caps are flat: a ball with two small flats.
     capped(rings, columns)
 }
 
-/// A box, each side divided into `n` by `n` squares; the sixth is missing if `open`.
+/// A box with sides divided into `n` by `n` squares. An open box lacks the sixth side.
 pub(crate) fn cube(n: u32, open: bool) -> Shape {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for side in 0..if open { 5 } else { 6 } {
@@ -156,20 +156,20 @@ pub(crate) fn cube(n: u32, open: bool) -> Shape {
     Shape::new(if open { "open box" } else { "box" }, vertices, triangles, !open)
 }
 
-/// A tube, 1 cm in radius for each 10 cm of the shape, bent into a hook.
+/// A tube bent into a hook, of a radius of 1 cm for each 10 cm of the shape.
 pub(crate) fn bent_tube() -> Shape {
     let (rows, columns) = (60, 16);
     let rings = band("bent tube", [rows, columns], false, |i, j| {
         let (s, c) = turn(i, 80);
         let (sj, cj) = turn(j, columns);
         let out = Vector3::new(c, s, 0.0);
-        // A pitch keeps it from being symmetric.
+        // A pitch breaks the symmetry.
         out * (0.4 + 0.05 * cj) + Vector3::z() * (0.003 * f64::from(i) + 0.05 * sj)
     });
     capped(rings, columns)
 }
 
-/// Triangles anywhere.
+/// Unconnected triangles at random positions.
 fn soup(random: &mut Random) -> Shape {
     let vertices: Vec<_> = (0..300)
         .flat_map(|_| {
@@ -180,7 +180,7 @@ fn soup(random: &mut Random) -> Shape {
     Shape::new("soup", vertices, (0..300).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(), false)
 }
 
-/// Long thin triangles, 10^-2 to 10^-5 as wide as long, between triangles that have no area at all.
+/// Long thin triangles with aspect ratios of 10^-2 to 10^-5, among triangles without area.
 pub(crate) fn slivers(random: &mut Random) -> Shape {
     let mut vertices = Vec::new();
     for i in 0..300 {
@@ -196,7 +196,7 @@ pub(crate) fn slivers(random: &mut Random) -> Shape {
     Shape::new("slivers", vertices, (0..300).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(), false)
 }
 
-/// A closed rod of long thin triangles, ended by fans of thin ones.
+/// A closed rod of long thin triangles with fans of thin triangles at its ends.
 fn rod() -> Shape {
     let columns = 1000;
     let rings = band("rod", [2, columns], false, |i, j| {
@@ -206,7 +206,7 @@ fn rod() -> Shape {
     capped(rings, columns)
 }
 
-/// 20 000 triangles, bumpy.
+/// A torus of 20 000 triangles with random bumps.
 fn bumpy(random: &mut Random) -> Shape {
     let mut shape = torus(100, 100);
     for v in &mut shape.vertices {
@@ -216,7 +216,7 @@ fn bumpy(random: &mut Random) -> Shape {
     shape
 }
 
-/// All of them, without offset.
+/// All shapes, around the origin.
 pub(crate) fn all() -> Vec<Shape> {
     let mut random = Random(1);
     let lopsided = Vector3::new(0.3, -0.5, 1.1);
@@ -237,7 +237,7 @@ pub(crate) fn all() -> Vec<Shape> {
     ]
 }
 
-/// All of them as objects are held: 1 cm to 10 m, some far from the origin.
+/// All shapes at sizes from 1 cm to 10 m, some far from the origin.
 pub(crate) fn all_places() -> Vec<Shape> {
     let far = Vector3::new(100.0, -70.0, 30.0);
     let places = [(0.01, 0.0), (0.2, 0.0), (0.2, 1.0), (10.0, 0.0), (10.0, 1.0)];

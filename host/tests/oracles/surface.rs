@@ -1,4 +1,4 @@
-//! Closest points, inside and outside, winding numbers.
+//! Closest points, signs and winding numbers.
 
 use crate::random::Random;
 use crate::shapes;
@@ -6,17 +6,17 @@ use crate::truth::Truth;
 use hangpose_core::geometry::{Point, Surface};
 use nalgebra::Point3;
 
-/// How far from the truth a distance may be, and how far off the mesh the closest point, in roundings; 1.5 and 0.7
+/// Bound on the error of a distance, and on the distance of the closest point from the mesh, in roundings. 1.5 and 0.7
 /// were found.
 const DISTANCE: f64 = 4.0;
-/// What [`Surface::winding_number`] promises, and a quarter more; 0.19 was found, on a bottle with thin walls. Without its
-/// approximation of distant parts it is 2e-5.
+/// Bound on the error of the winding number, a quarter above the bound that [`Surface::winding_number`] documents. 0.19
+/// was found, on a bottle with thin walls. Without the approximation of distant parts the error is 2e-5.
 const WINDING: f64 = 0.25;
-/// Closer to the mesh than this, in diagonals of its box, single triangles decide the winding number, and thin ones are
-/// rounded off. There only the sign is checked.
+/// Distance from the mesh, in diagonals of its bounding box, below which only the sign is checked. There single
+/// triangles decide the winding number, and thin ones are subject to rounding.
 const CLOSE: f64 = 1e-4;
 
-/// The largest errors; distances in roundings.
+/// Largest errors; distances in roundings.
 #[derive(Debug, Default)]
 pub(crate) struct Worst {
     distance: f64,
@@ -24,7 +24,7 @@ pub(crate) struct Worst {
     winding: f64,
 }
 
-/// A point around the mesh, inside it, or close to it, as often each.
+/// A point around the mesh, in its bounding box, close to the mesh, or on it, with equal probability.
 fn query(truth: &Truth, random: &mut Random) -> Point {
     let (middle, extents) = (nalgebra::center(&truth.low, &truth.high), truth.high - truth.low);
     let corners = truth.corners[random.below(truth.corners.len())];
@@ -54,14 +54,11 @@ pub(crate) fn check(
         let closest = surface.closest_point(&point);
         let signed = f64::from(surface.signed_distance(&point));
         let distance = (signed.abs() - expected).abs() / rounding;
-        if distance > 8.0 {
-            println!("SIGNED {} {name}", (signed.abs() - expected) / rounding);
-        }
         let off = truth.distance(&closest.cast()) / rounding;
         assert!(distance < DISTANCE && off < DISTANCE, "{name}: {point}: {distance} {off}");
         worst.distance = worst.distance.max(distance);
         worst.off = worst.off.max(off);
-        // Within a radius, unless the difference is a matter of rounding.
+        // Queries with a radius, unless rounding can decide them.
         for factor in [0.5, 0.99, 1.01, 2.0] {
             let radius = expected * factor;
             if (radius - expected).abs() > DISTANCE * rounding {

@@ -1,4 +1,4 @@
-//! What is true of a mesh, by parry in double precision.
+//! Reference results for a mesh, by parry in double precision.
 
 use crate::shapes::Shape;
 use nalgebra::{Point3, Vector3};
@@ -9,20 +9,21 @@ use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 pub(crate) struct Truth {
     mesh: TriMesh,
     bodies: Vec<TriMesh>,
-    /// Triangles with an area, in f64.
+    /// Corners of the triangles that have an area.
     pub(crate) corners: Vec<[Point3<f64>; 3]>,
-    /// The box around them.
+    /// Lower corner of the bounding box.
     pub(crate) low: Point3<f64>,
+    /// Upper corner of the bounding box.
     pub(crate) high: Point3<f64>,
 }
 
-/// A point where a ray meets a mesh.
+/// Intersection of a ray and a mesh.
 pub(crate) struct Hit {
-    /// As a multiple of the direction.
+    /// Ray parameter, in multiples of the direction.
     pub(crate) at: f64,
-    /// Of the angle between the ray and the normal, absolute.
+    /// Absolute cosine of the angle between the ray and the normal.
     pub(crate) cosine: f64,
-    /// How far from the triangle's border, across the ray.
+    /// Distance from the border of the triangle, perpendicular to the ray.
     pub(crate) from_border: f64,
 }
 
@@ -34,13 +35,13 @@ fn to_parry(p: Point3<f64>) -> math::Vector {
     math::Vector::new(p.x, p.y, p.z)
 }
 
-/// Width over length, as the core defines what has an area: twice the area over the square of the longest edge.
+/// Aspect ratio by the core's definition: twice the area over the square of the longest edge.
 fn aspect([a, b, c]: [Point3<f64>; 3]) -> f64 {
     let longest = (b - a).norm_squared().max((c - a).norm_squared()).max((c - b).norm_squared());
     if longest > 0.0 { (b - a).cross(&(c - a)).norm() / longest } else { 0.0 }
 }
 
-/// How far the line through `point` along `direction` passes the closest edge.
+/// Distance between the line through `point` along `direction` and the closest edge.
 fn border_distance([a, b, c]: [Point3<f64>; 3], point: &Point3<f64>, direction: &Vector3<f64>) -> f64 {
     let across = |v: Vector3<f64>| v - direction * (v.dot(direction) / direction.norm_squared());
     let edges = [[a, b], [b, c], [c, a]].map(|[p, q]| {
@@ -54,7 +55,7 @@ impl Truth {
     pub(crate) fn of(shape: &Shape) -> Self {
         let vertices: Vec<Point3<f64>> = shape.vertices.iter().map(|&v| double(v)).collect();
         let parrys: Vec<math::Vector> = vertices.iter().map(|&v| to_parry(v)).collect();
-        // The core passes over triangles without area, and so must parry.
+        // The core ignores triangles without area, so they are dropped here too.
         let solid: Vec<(usize, [u32; 3])> = shape
             .triangles
             .iter()
@@ -83,17 +84,17 @@ impl Truth {
         }
     }
 
-    /// The length of the box's diagonal.
+    /// Length of the diagonal of the bounding box.
     pub(crate) fn size(&self) -> f64 {
         (self.high - self.low).norm()
     }
 
-    /// One rounding of the distances between `point` and the mesh: see the head of this test.
+    /// One rounding of the distances between `point` and the mesh, as defined in `main.rs`.
     pub(crate) fn rounding_of_distances(&self, point: &Point3<f64>) -> f64 {
         f64::from(f32::EPSILON) * (self.high - point).amax().max((self.low - point).amax())
     }
 
-    /// One rounding of these distances or of coordinates, whichever is more.
+    /// One rounding of these distances or of the coordinates, whichever is larger.
     pub(crate) fn rounding(&self, point: &Point3<f64>) -> f64 {
         let largest = self.low.coords.amax().max(self.high.coords.amax()).max(point.coords.amax());
         self.rounding_of_distances(point).max(f64::from(f32::EPSILON) * largest)
@@ -107,7 +108,7 @@ impl Truth {
         self.mesh.distance_to_local_point(to_parry(*point), false)
     }
 
-    /// The first hit of a ray, beyond `skip`.
+    /// First hit of a ray beyond `skip`.
     pub(crate) fn first_hit(&self, origin: &Point3<f64>, direction: &Vector3<f64>, skip: f64) -> Option<Hit> {
         let d = to_parry(Point3::from(*direction));
         let ray = Ray::new(to_parry(origin + direction * skip), d);
@@ -120,13 +121,13 @@ impl Truth {
         })
     }
 
-    /// Whether a point is in a body; `None` if the shape is open.
+    /// Whether a point is in any body; `None` if the shape is open.
     pub(crate) fn is_inside(&self, point: &Point3<f64>) -> Option<bool> {
         let inside = |body: &TriMesh| body.contains_local_point(to_parry(*point));
         (!self.bodies.is_empty()).then(|| self.bodies.iter().any(inside))
     }
 
-    /// The winding number: the sum of all solid angles (Van Oosterom and Strackee 1983) over that of a sphere.
+    /// Winding number: the sum of all solid angles (Van Oosterom and Strackee 1983) over 4π.
     pub(crate) fn winding_number(&self, point: &Point3<f64>) -> f64 {
         let angle = |corners: &[Point3<f64>; 3]| {
             let [a, b, c] = corners.map(|corner| corner - point);

@@ -1,4 +1,4 @@
-//! What hangs above a stove.
+//! Kitchen tools.
 
 use super::super::builder::Builder;
 use super::super::sections::{ellipse, rectangle};
@@ -14,7 +14,7 @@ pub(super) fn utensil(random: &mut Random) -> HangObject {
     }
 }
 
-/// A flat handle along x, from a hole at the origin; returns the hole's radius and thickness.
+/// Adds a flat handle along x with a hole at the origin.
 fn handle_with_hole(builder: &mut Builder, random: &mut Random, length: f64) {
     let hole = random.range(0.0035, 0.0075);
     let (rim, thick) = (hole + random.range(0.004, 0.007), random.range(0.004, 0.008));
@@ -64,7 +64,7 @@ fn ladle(random: &mut Random, has_hook: bool) -> HangObject {
         .collect();
     let mut cup = Builder::default();
     cup.revolve(&bowl);
-    // The handle goes up x from the bowl's rim; the bowl looks along z.
+    // The handle runs along x to the rim of the bowl, which opens along z.
     builder.place(&cup, [X, Y, Z], [length + radius, 0.0, 0.0]);
     if !has_hook {
         handle_with_hole(&mut builder, random, length + 0.001);
@@ -88,7 +88,7 @@ pub(super) fn knife(random: &mut Random) -> HangObject {
         return cleaver(random, handle, back);
     }
     let (blade, deep) = (random.range(0.09, 0.22), random.range(0.02, 0.045));
-    // A wedge: its back at +y, its edge at -y.
+    // A wedge-shaped section with its back at +y and its edge at -y.
     let wedge = |x: f64, edge: f64, top: f64| {
         vec![[x, edge, -0.0004], [x, edge, 0.0004], [x, top, back / 2.0], [x, top, -back / 2.0]]
     };

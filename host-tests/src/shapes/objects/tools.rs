@@ -1,4 +1,4 @@
-//! Tools and things on walls.
+//! Tools and household objects.
 
 use super::super::builder::Builder;
 use super::super::sections::ellipse;
@@ -23,7 +23,7 @@ pub(super) fn scissors(random: &mut Random) -> HangObject {
             &[[0.0, -0.0065], [0.0, 0.0065], [-shank, 0.004], [-shank, -0.004]],
             [0.0002, thick - 0.0002],
         );
-        // The ring lies outside of the shank, and is thicker.
+        // The ring lies outside the shank and is thicker.
         let centre: V = [-shank - 0.8 * ring[0], -0.45 * ring[1], thick / 2.0];
         let path = arc(centre, scale(X, ring[0] + rim), scale(Y, ring[1] + rim), [0.0, 360.0], 28);
         half.sweep(&path, Z, &ellipse(1.3 * rim, rim));
@@ -46,7 +46,7 @@ pub(super) fn wrench(random: &mut Random) -> HangObject {
     let length = 0.05 + 12.0 * size * random.range(0.8, 1.1);
     let thick = 0.003 + 0.35 * size;
     let z = [-thick, thick];
-    // Twelve corners within, a round rim without.
+    // Twelve inner corners and a round outer rim.
     let eye = |builder: &mut Builder, x: f64, size: f64| {
         let pairs: Vec<_> = (0..24)
             .map(|i| (turn(15.0 * f64::from(i)), if i % 2 == 0 { 1.06 } else { 1.0 }))

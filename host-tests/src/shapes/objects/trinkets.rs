@@ -1,4 +1,4 @@
-//! Small things with a hole.
+//! Small objects with a hole.
 
 use super::super::builder::Builder;
 use super::super::vector::{V, X, Y, Z, arc, rounded, scale};

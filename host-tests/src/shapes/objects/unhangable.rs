@@ -1,4 +1,4 @@
-//! Things without anything to hang by.
+//! Objects that cannot hang.
 
 use super::super::builder::Builder;
 use super::super::sections::circle;

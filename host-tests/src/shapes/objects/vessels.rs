@@ -5,7 +5,7 @@ use super::super::sections::{ellipse, rectangle};
 use super::super::vector::{V, X, Y, Z, arc, bezier, scale};
 use super::{HangObject, OpeningKind, Random};
 
-/// A cup with walls from `foot` to `rim` and a floor.
+/// Adds a cup with a floor and walls from radius `foot` to radius `rim`.
 fn cup(builder: &mut Builder, [foot, rim]: [f64; 2], height: f64, wall: f64) {
     builder.revolve(&[
         [[0.0, 0.0], [0.0, wall]],
@@ -60,7 +60,7 @@ pub(super) fn goblet(random: &mut Random) -> HangObject {
     goblet
 }
 
-/// A handle over the top of a vessel: half an ellipse from ear to ear along y.
+/// Adds a handle over the top of a vessel, half an ellipse from ear to ear along y. Returns a point inside its hole.
 fn bail(builder: &mut Builder, half: f64, from: f64, rise: f64, radius: f64) -> V {
     builder.tube(&arc([0.0, 0.0, from], scale(Y, half), scale(Z, rise), [0.0, 180.0], 24), radius);
     [0.0, 0.0, from + 0.6 * rise]
@@ -130,7 +130,7 @@ pub(super) fn watering_can(random: &mut Random) -> HangObject {
     );
     builder.sweep(&handle, Y, &ellipse(1.3 * grip, grip));
     let outermost = handle.iter().min_by(|a, b| a[0].total_cmp(&b[0])).copied().unwrap_or(front);
-    // What carries the handle's front end.
+    // A bar across the opening that carries the front end of the handle.
     builder.cuboid([0.4 * radius, -0.8 * back, height - 0.007], [0.6 * radius, 0.8 * back, height - 0.001]);
     HangObject::new(&builder).hole([(outermost[0] - back) / 2.0, 0.0, outermost[2]], Y).hole_through(
         [-0.3 * radius, 0.0, height + 0.025],

@@ -1,4 +1,4 @@
-//! What people wear, carry, and hang clothes on.
+//! Clothing accessories, bags and clothes hangers.
 
 use super::super::builder::Builder;
 use super::super::sections::{circle, rectangle};
@@ -55,7 +55,7 @@ pub(super) fn cap(random: &mut Random) -> HangObject {
         .collect();
     builder.strip(&pairs, [0.0005, 0.0035], false);
     let mut cap = HangObject::new(&builder);
-    // Half way up the hollow is the widest bar that reaches its ground.
+    // Half way up the hollow, the radius of the widest bar that reaches its ground.
     let clear = (radius - thick) * 0.5;
     cap.push(OpeningKind::Rim, [0.0, 0.0, 0.5 * height], scale(Z, -1.0), clear);
     cap
@@ -66,7 +66,7 @@ pub(super) fn clothes_hanger(random: &mut Random) -> HangObject {
     let mut builder = Builder::default();
     let wire = random.range(0.0016, 0.0025);
     let (bend, neck) = (random.range(0.018, 0.028), random.range(0.02, 0.04));
-    // From the neck round the right, over the top, to the tip on the left.
+    // From the neck around the right side and over the top to the tip on the left.
     let tip = random.range(185.0, 205.0);
     let mut path = vec![[0.0, 0.0, -0.002], [0.0, 0.0, neck - wire]];
     let middle = [0.0, 0.0, neck + bend];
@@ -109,7 +109,7 @@ pub(super) fn headphone(random: &mut Random) -> HangObject {
             [0.85 * cup, 0.5 * deep],
             [0.0, 0.5 * deep],
         ]);
-        // Its pad looks inwards.
+        // The pad faces inwards.
         shell.sweep(
             &arc([0.0, 0.0, 0.55 * deep], scale(X, 0.7 * cup), scale(Y, 0.7 * cup), [0.0, 360.0], 24),
             Z,

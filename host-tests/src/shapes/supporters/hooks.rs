@@ -5,7 +5,8 @@ use super::super::vector::{V, X, Y, Z, add, arc, bezier, rounded, scale, turn};
 use super::super::{Bar, Random, Support};
 use super::{bar, plate};
 
-/// A J before a wall: down from `top`, round a half circle of `bend`, and up to `rise` above its middle.
+/// Adds a J in front of a wall: from `top` down by `drop`, round a half circle of radius `bend`, and up to `rise` above
+/// its centre.
 fn j(builder: &mut Builder, top: V, [drop, bend, rise]: [f64; 3], radius: f64) -> Bar {
     let centre = add(top, [bend, 0.0, -drop]);
     let mut path = vec![[-0.001, top[1], top[2]], top];
@@ -47,7 +48,7 @@ pub(super) fn l_hook(random: &mut Random) -> Support {
     builder.tube(&path, radius);
     let width = random.range(0.03, 0.08);
     plate(&mut builder, [0.0, 0.0], [width, random.range(0.03, 0.1)], 0.012);
-    // What rests on it, and the end that points up, for hollows.
+    // The level part, and the end that points up, for hollows.
     let ground = bar([0.0; 3], [reach - round, 0.0, 0.0], radius);
     let bars = vec![ground, bar([reach, 0.0, round], [reach, 0.0, rise], radius)];
     Support { solid: builder.finish(), bars }
@@ -69,7 +70,7 @@ pub(super) fn s_hook(random: &mut Random) -> Support {
     path.extend(arc(centre, scale(Y, lower), scale(Z, lower), [180.0, 380.0], 16));
     builder.tube(&path, radius);
     let lowest = add(centre, [0.0, 0.0, -lower]);
-    // Its mouth looks to +y, the upper one's to -y.
+    // The mouth of the lower bend opens to +y, that of the upper bend to -y.
     let mut ground = bar(add(lowest, [0.0, -0.3 * lower, 0.0]), add(lowest, [0.0, 0.3 * lower, 0.0]), radius);
     ground.wall = Some((super::super::vector::single(X), off as f32));
     Support { solid: builder.finish(), bars: vec![ground] }
@@ -113,14 +114,14 @@ pub(super) fn double_hook(random: &mut Random) -> Support {
     Support { solid: builder.finish(), bars: bars.to_vec() }
 }
 
-/// A carabiner on a wall ring with its gate pushed open: the lower bend, open at one side.
+/// A carabiner on a wall bracket with its gate pushed open. Objects hang in the lower bend.
 pub(super) fn carabiner_hook(random: &mut Random) -> Support {
     let mut builder = Builder::default();
     let radius = random.range(0.003, 0.005);
     let bend = random.range(0.012, 0.02) + radius;
     let tall = random.range(0.04, 0.06);
     let off = random.range(0.045, 0.2);
-    // The eye that it hangs in is a bracket through its upper bend.
+    // It hangs on a bracket through its upper bend.
     builder.tube(&[[-0.001, 0.0, 0.0], [off + 0.02, 0.0, 0.0]], 0.005);
     plate(&mut builder, [0.0, 0.0], [0.04, 0.05], 0.012);
     let above = [off, 0.0, 0.005 + radius - bend];

@@ -29,7 +29,7 @@ pub const SUPPORTERS: &[SupporterKind] = &[
     SupporterKind { name: "fork", make: stands::fork },
 ];
 
-/// A bar from its root to its end, before a wall at x = 0.
+/// A bar from `root` to `end` in front of a wall at x = 0.
 fn bar(root: V, end: V, radius: f64) -> Bar {
     let reach = sub(end, root);
     let direction = unit(reach);
@@ -47,7 +47,7 @@ fn bar(root: V, end: V, radius: f64) -> Bar {
     }
 }
 
-/// A wall plate about (0, y, z), its front at x = 0.
+/// Adds a wall plate about (0, y, z) with its front at x = 0.
 fn plate(builder: &mut Builder, [y, z]: [f64; 2], [width, height]: [f64; 2], thickness: f64) {
     builder.cuboid([-thickness, y - width / 2.0, z - height / 2.0], [0.0, y + width / 2.0, z + height / 2.0]);
 }

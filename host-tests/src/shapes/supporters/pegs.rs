@@ -1,11 +1,11 @@
-//! Straight things that stick out of a wall.
+//! Straight pegs and nails on a wall.
 
 use super::super::builder::Builder;
 use super::super::vector::{V, X, Y, Z, along, turn};
 use super::super::{Bar, Random, Support};
 use super::{bar, plate};
 
-/// A straight peg with its root at (0, y, z).
+/// Adds a straight peg with its root at (0, y, z).
 fn straight(builder: &mut Builder, [y, z]: [f64; 2], tilt: f64, length: f64, radius: f64) -> Bar {
     let [cos, sin] = turn(tilt);
     let at = |s: f64| -> V { [s * cos, y, z + s * sin] };

@@ -54,7 +54,7 @@ pub(super) fn rail(random: &mut Random) -> Support {
     let reach = half - 0.03;
     let mut bar = bar([off, -reach, 0.0], [off, reach, 0.0], radius);
     bar.has_free_end = false;
-    // An object hangs anywhere on it; its middle stands for all of them.
+    // An object can hang anywhere on the rail; the centre represents all positions.
     (bar.position, bar.length) = ([off as f32, 0.0, 0.0], 0.0);
     Support { solid: builder.finish(), bars: vec![bar] }
 }
@@ -77,7 +77,7 @@ pub(super) fn rod(random: &mut Random) -> Support {
     Support { solid: builder.finish(), bars: vec![bar] }
 }
 
-/// Flat rails below a shelf, in pairs that a glass's foot slides onto.
+/// Flat rails below a shelf, in pairs that hold the foot of a glass.
 pub(super) fn glass_rack(random: &mut Random) -> Support {
     let mut builder = Builder::default();
     let lanes = 1 + random.pick(2);
@@ -103,7 +103,7 @@ pub(super) fn glass_rack(random: &mut Random) -> Support {
             let middle = [0.0, (inner + outer) / 2.0, -below - 0.0025];
             let mut bar = bar(middle, add(middle, [length, 0.0, 0.0]), width / 2.0);
             bar.gap = gap as f32;
-            // Nothing goes around it because of the web.
+            // The web keeps every opening from enclosing the rail.
             bar.pass_radius = f32::INFINITY;
             bars.push(bar);
         }
@@ -111,7 +111,7 @@ pub(super) fn glass_rack(random: &mut Random) -> Support {
     Support { solid: builder.finish(), bars }
 }
 
-/// Prongs that curve up like a hand's fingers, side by side on an arm.
+/// Parallel prongs on an arm that curve upwards.
 pub(super) fn fork(random: &mut Random) -> Support {
     let mut builder = Builder::default();
     let prongs = 2 + random.pick(3);

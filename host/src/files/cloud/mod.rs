@@ -8,18 +8,18 @@ use std::path::Path;
 use super::source::{CLOUDS, Format, Source};
 use super::{FileError, mesh, ply};
 
-/// A point cloud as a file holds it.
+/// Content of a point cloud file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CloudFile {
-    /// Points in the file's frame and unit, each finite.
+    /// Points in the frame and unit of the file, each finite.
     pub points: Vec<[f32; 3]>,
-    /// A normal for each point, if the file has any: of unit length, or zero where the file has none for that point.
+    /// One normal per point, if the file has normals: of unit length, or zero where the file has none for the point.
     pub normals: Option<Vec<[f32; 3]>>,
-    /// What a person should know: short sentences.
+    /// What the reader changed or ignored, as sentences for the user.
     pub notes: Vec<String>,
 }
 
-/// Reads a point cloud: PLY, PCD or XYZ text, told by the extension. An OBJ with vertices but no faces is one too.
+/// Reads a point cloud: PLY, PCD or XYZ text, according to the extension, or an OBJ with vertices but no faces.
 pub fn read_cloud(path: &Path) -> Result<CloudFile, FileError> {
     read(&Source::open(path, CLOUDS)?)
 }
@@ -32,22 +32,22 @@ pub(super) fn read(source: &Source<'_>) -> Result<CloudFile, FileError> {
         Format::Obj => RawCloud { points: mesh::obj_points(source)?, ..RawCloud::default() },
         Format::Ply => {
             let ply = ply::read(source)?;
-            if ply.mesh.face_count() > 0 {
+            if !ply.faces.is_empty() {
                 return Err(mesh_not_cloud());
             }
-            RawCloud { points: ply.mesh.vertices, normals: ply.normals, ..RawCloud::default() }
+            RawCloud { points: ply.vertices, normals: ply.normals, ..RawCloud::default() }
         }
         Format::Stl | Format::Gltf => return Err(mesh_not_cloud()),
     }
     .finish(source)
 }
 
-/// Points as they stand in the file, unchecked.
+/// Points of a file, unchecked.
 #[derive(Default)]
 struct RawCloud {
     points: Vec<[f32; 3]>,
     normals: Option<Vec<[f32; 3]>>,
-    /// How many points were marked as missing and left out.
+    /// Number of points that were marked as missing (NaN) and dropped.
     missing: usize,
     notes: Vec<String>,
 }
@@ -64,7 +64,7 @@ impl RawCloud {
         }
         if missing > 0 {
             notes.push(format!(
-                "{missing} of {} points were missing (NaN) and were left out.",
+                "{missing} of {} points were missing (NaN) and were dropped.",
                 missing + points.len()
             ));
         }
@@ -92,9 +92,10 @@ impl RawCloud {
     }
 }
 
-/// Makes normals of unit length, but for zeros; returns how many were zero and how many were far from it.
+/// Normalises all normals that are not zero. Returns the number of zero normals and of those that were not of unit
+/// length.
 fn normalise(normals: &mut [[f32; 3]]) -> (usize, usize) {
-    // What a text file with three decimals is off by.
+    // Error in length of a normal written with three decimals.
     const FAR: f64 = 2e-3;
     let (mut zero, mut changed) = (0, 0);
     for normal in normals {
@@ -105,7 +106,7 @@ fn normalise(normals: &mut [[f32; 3]]) -> (usize, usize) {
             continue;
         }
         changed += usize::from((length - 1.0).abs() > FAR);
-        // One that is as close as f32 gets stays as it is, bit for bit.
+        // A normal of unit length within the rounding of f32 keeps its bits.
         if (length - 1.0).abs() > 1e-6 {
             *normal = exact.map(|x| (x / length) as f32);
         }

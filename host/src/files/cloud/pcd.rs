@@ -25,38 +25,38 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
         })?;
         let three = |columns: [usize; 3]| columns.map(|column| value(&record.0[column]));
         let point = three(columns.point);
-        // Cameras keep their rows and columns: where they saw nothing stands NaN.
+        // An organised cloud has NaN for every pixel without depth.
         if point.iter().any(|x| x.is_nan()) {
             cloud.missing += 1;
             continue;
         }
         cloud.points.push(point);
         if let (Some(normals), Some(columns)) = (&mut cloud.normals, columns.normal) {
-            // And where too few neighbours made a normal.
+            // A normal is NaN where the point had too few neighbours.
             let normal = three(columns);
             normals.push(if normal.iter().any(|x| x.is_nan()) { [0.0; 3] } else { normal });
         }
     }
     let read = (cloud.points.len() + cloud.missing) as u64;
     if read < meta.num_points {
-        let reason = format!("the header promises {} points, but there are {read}", meta.num_points);
+        let reason = format!("the header declares {} points, but there are {read}", meta.num_points);
         return Err(source.truncated(Place::Byte(source.bytes.len()), reason));
     }
     let view = &meta.viewpoint;
     if [view.tx, view.ty, view.tz, view.qw, view.qx, view.qy, view.qz] != [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
     {
-        cloud.notes.push("Its VIEWPOINT was not applied: the points are taken as they stand.".into());
+        cloud.notes.push("VIEWPOINT was ignored: the points keep their coordinates in the file.".into());
     }
     Ok(cloud)
 }
 
-/// Refuses sizes that the file is too short for. pcd-rs 0.13 trusts its header: it would reserve what a compressed file
-/// claims to unpack to, index past the end of what it did unpack, and overflow when it adds up counts.
+/// Rejects sizes that exceed the length of the file. pcd-rs 0.13 trusts the header: it would reserve the claimed size
+/// of a compressed file, index past the end of the decompressed data, and overflow when it sums counts.
 fn check_lengths(source: &Source<'_>, meta: &PcdMeta, body: usize) -> Result<(), FileError> {
     let held = (source.bytes.len() - body) as u64;
     let too_few = |wanted: &str| {
         let reason = format!(
-            "the header promises {} points in {wanted} bytes, but {held} bytes follow it",
+            "the header declares {} points in {wanted} bytes, but {held} bytes follow it",
             meta.num_points
         );
         source.truncated(Place::Byte(body), reason)
@@ -67,7 +67,7 @@ fn check_lengths(source: &Source<'_>, meta: &PcdMeta, body: usize) -> Result<(),
             .try_fold(0_u64, |sum, f| sum.checked_add(each(f.count, f.kind.byte_size() as u64)?))
     };
     let total = match meta.data {
-        // At least a digit and a separator each; the last needs none.
+        // At least a digit and a separator per number; no separator follows the last.
         DataKind::Ascii => sum(&|count, _| count.checked_mul(2)),
         DataKind::Binary | DataKind::BinaryCompressed => sum(&|count, size| count.checked_mul(size)),
     }
@@ -83,10 +83,10 @@ fn check_lengths(source: &Source<'_>, meta: &PcdMeta, body: usize) -> Result<(),
                 .count() as u64;
             if lines < meta.num_points {
                 let reason =
-                    format!("the header promises {} points, but {lines} lines follow it", meta.num_points);
+                    format!("the header declares {} points, but {lines} lines follow it", meta.num_points);
                 return Err(source.truncated(Place::Whole, reason));
             }
-            // The lines are there, but COUNT may ask for more numbers than they can hold.
+            // COUNT may still declare more numbers than the lines can hold.
             if total > held + 1 { Err(too_few(&format!("at least {total}"))) } else { Ok(()) }
         }
         DataKind::Binary if total > held => Err(too_few(&total.to_string())),
@@ -101,7 +101,7 @@ fn check_lengths(source: &Source<'_>, meta: &PcdMeta, body: usize) -> Result<(),
             if packed + 8 > held {
                 return Err(too_few(&format!("{packed} compressed")));
             }
-            // LZF cannot shrink by more than 88: three bytes stand for 264 at most.
+            // LZF compresses by a factor of at most 88: three bytes encode up to 264.
             if unpacked != total || unpacked > 88 * packed {
                 let reason = format!(
                     "{packed} bytes that unpack to {unpacked} do not make {} points of {total} bytes in all",
@@ -115,7 +115,7 @@ fn check_lengths(source: &Source<'_>, meta: &PcdMeta, body: usize) -> Result<(),
     }
 }
 
-/// Where in a record a point and its normal stand.
+/// Columns of a record that hold the point and its normal.
 struct Columns {
     point: [usize; 3],
     normal: Option<[usize; 3]>,
@@ -123,7 +123,7 @@ struct Columns {
 
 impl Columns {
     fn find(source: &Source<'_>, meta: &PcdMeta) -> Result<Self, FileError> {
-        // Records come without the padding that `_` stands for.
+        // Records of pcd-rs omit the padding fields, which are named `_`.
         let column = |name: &str| {
             meta.field_defs.iter().filter(|f| !f.is_padding()).position(|f| f.name == name && f.count == 1)
         };
@@ -136,7 +136,7 @@ impl Columns {
     }
 }
 
-/// The first number of a field; there is one, for its count is checked to be one.
+/// The number in a field, whose count has been checked to be one.
 fn value(field: &Field) -> f32 {
     match field {
         Field::I8(v) => v.first().map(|x| f32::from(*x)),

@@ -1,4 +1,4 @@
-//! Text with a point a line: XYZ, PTS and their like.
+//! Text with one point per line: XYZ, PTS and similar formats.
 
 use super::super::source::Source;
 use super::super::text::{before_comment, lines, number, short};
@@ -7,8 +7,8 @@ use super::RawCloud;
 
 /// Reads `x y z`, or `x y z nx ny nz`, separated by spaces, tabs, commas or semicolons.
 ///
-/// `x y z intensity`, `x y z r g b` and `x y z intensity r g b`, as laser scanners write them, are read without the rest.
-/// `#` and `//` begin a comment; a lone number before the points is their count.
+/// Of `x y z intensity`, `x y z r g b` and `x y z intensity r g b`, which laser scanners write, only x, y and z are
+/// used. `#` and `//` begin a comment. A single number before the points is their count.
 pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
     let mut rows: Vec<f32> = Vec::new();
     let mut width = 0;
@@ -28,13 +28,13 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
         if width == 0 {
             if ![3, 4, 6, 7].contains(&count) {
                 return Err(malformed(format!(
-                    "expected 3 numbers (x y z) or 6 (and a normal), found {count}"
+                    "expected 3 numbers (x y z) or 6 (x y z and a normal), found {count}"
                 )));
             }
             width = count;
         }
         if count != width {
-            return Err(malformed(format!("the points before have {width} numbers, this one has {count}")));
+            return Err(malformed(format!("the previous points have {width} numbers, this one has {count}")));
         }
         for word in words() {
             rows.push(number(word).ok_or_else(|| malformed(expected(word)))?);
@@ -69,7 +69,7 @@ fn expected(word: &str) -> String {
     format!("expected a number, not \"{}\"", short(word))
 }
 
-/// Whole numbers from 0 to 255, and not all as small as normals are.
+/// Whether the columns hold whole numbers from 0 to 255 that are not all as small as components of normals.
 fn are_colours(rows: &[&[f32]]) -> bool {
     let mut values = rows.iter().flat_map(|row| &row[3..6]);
     values.clone().all(|x| x.fract() == 0.0 && (0.0..=255.0).contains(x)) && values.any(|x| *x > 1.0)

@@ -8,24 +8,24 @@ mod stl;
 
 use std::path::Path;
 
-pub(super) use raw::RawMesh;
-
+use super::FileError;
+use super::ply::{self, Ply};
 use super::source::{Format, MESHES, Source};
-use super::{FileError, ply};
+use raw::RawMesh;
 
-/// A mesh as a file holds it.
+/// Content of a mesh file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
-    /// Vertices in the file's frame and unit. Each is finite, used by a triangle, and at a place of its own.
+    /// Vertices in the frame and unit of the file. Each is finite, distinct from the others, and used by a triangle.
     pub vertices: Vec<[f32; 3]>,
-    /// Corners of each triangle, counter-clockwise seen from outside if the file keeps to that. Every index is in range and
-    /// no triangle repeats one; some may have no area.
+    /// Vertex indices of each triangle, in the winding order of the file, which by convention is counter-clockwise seen
+    /// from outside. Every index is in range and no triangle repeats one. A triangle may have no area.
     pub triangles: Vec<[u32; 3]>,
-    /// What a person should know: short sentences.
+    /// What the reader changed or ignored, as sentences for the user.
     pub notes: Vec<String>,
 }
 
-/// Reads a mesh: OBJ, STL, PLY, GLB or glTF, told by the extension.
+/// Reads a mesh: OBJ, STL, PLY, GLB or glTF, according to the extension.
 pub fn read_mesh(path: &Path) -> Result<MeshFile, FileError> {
     read(&Source::open(path, MESHES)?)
 }
@@ -34,13 +34,22 @@ pub(super) fn read(source: &Source<'_>) -> Result<MeshFile, FileError> {
     match source.format {
         Format::Obj => obj::read(source)?,
         Format::Stl => stl::read(source)?,
-        Format::Ply => ply::read(source)?.mesh,
+        Format::Ply => of_ply(ply::read(source)?),
         Format::Gltf => gltf::read(source)?,
         Format::Pcd | Format::Xyz => {
             return Err(FileError::CloudNotMesh { path: source.path.into() });
         }
     }
     .finish(source)
+}
+
+fn of_ply(ply: Ply) -> RawMesh {
+    let mut mesh = RawMesh::default();
+    mesh.vertices = ply.vertices;
+    for face in ply.faces {
+        mesh.face(face.corners, face.line);
+    }
+    mesh
 }
 
 /// The vertices of an OBJ without faces.

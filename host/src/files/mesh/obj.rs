@@ -1,8 +1,8 @@
-//! Wavefront OBJ: its vertices and its faces.
+//! Wavefront OBJ: vertices and faces.
 //!
-//! Read by hand, because the loaders at hand do more than is wanted and lose what is needed. tobj 4 takes a polyline
-//! (`l 1 2 3`) for a triangle, drops vertices without faces, renumbers the rest for every group and names no line in its
-//! errors; obj 0.10 loses the faces before an empty `g`, panics at some non-ASCII group names and refuses `vt` with one number.
+//! The format is parsed here, because the existing crates are unsuitable. tobj 4 reads a polyline (`l 1 2 3`) as a
+//! triangle, drops vertices without faces, renumbers the rest for every group and names no line in its errors. obj 0.10
+//! loses the faces before an empty `g`, panics at some non-ASCII group names and rejects `vt` with one number.
 
 use super::super::source::Source;
 use super::super::text::{before_comment, lines, number, short, three};
@@ -13,7 +13,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
     let mut mesh = RawMesh::default();
     let mut carried = String::new();
     for (number, line) in lines(&source.bytes) {
-        // A backslash at the end carries a line over to the next.
+        // A backslash at the end continues a line on the next.
         if let Some(begun) = line.strip_suffix('\\') {
             carried.push_str(begun);
             carried.push(' ');
@@ -32,7 +32,7 @@ fn statement(mesh: &mut RawMesh, line: &str, line_number: usize) -> Result<(), S
     match words.next() {
         Some("v") => {
             let vertex = three(&mut words)?;
-            // One more number is a weight; three more are a colour, which is not needed.
+            // One more number is a weight; three more are a colour, which is ignored.
             let weight = match (words.next(), words.next()) {
                 (Some(word), None) => number(word).ok_or("the weight is not a number")?,
                 _ => 1.0,
@@ -47,13 +47,14 @@ fn statement(mesh: &mut RawMesh, line: &str, line_number: usize) -> Result<(), S
             }
             mesh.face(corners, line_number);
         }
-        // Normals, textures, groups, materials, lines, curves: not part of the shape.
+        // Normals, textures, groups, materials, lines and curves are ignored.
         _ => {}
     }
     Ok(())
 }
 
-/// The vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 0. A negative one counts back from the newest.
+/// The vertex index of `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 0. A negative index counts back from the last
+/// vertex.
 fn corner(word: &str, vertices: usize) -> Result<i64, String> {
     let vertex = word.split('/').next().unwrap_or_default();
     match vertex.parse::<i64>() {

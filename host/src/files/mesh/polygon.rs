@@ -1,9 +1,9 @@
-//! Polygons to triangles.
+//! Triangulation of polygons.
 
 use earcut::Earcut;
 use earcut::utils3d::project3d_to_2d;
 
-/// Cuts polygons into triangles that turn the same way; keeps its buffers from one to the next.
+/// Triangulates polygons and keeps their winding order; reuses its buffers.
 #[derive(Default)]
 pub(super) struct Triangulator {
     earcut: Earcut<f64>,
@@ -13,9 +13,9 @@ pub(super) struct Triangulator {
 }
 
 impl Triangulator {
-    /// Appends the triangles of the polygon whose corners are `ring`, three or more of them.
+    /// Appends the triangles of the polygon with corners `ring`, at least three.
     ///
-    /// The polygon may be concave and have corners on straight edges; corners a little off its plane do no harm.
+    /// The polygon may be concave, have corners on straight edges, and be slightly non-planar.
     pub(super) fn append(&mut self, vertices: &[[f32; 3]], ring: &[u32], triangles: &mut Vec<[u32; 3]>) {
         match *ring {
             [a, b, c] => push(triangles, [a, b, c]),
@@ -29,12 +29,12 @@ impl Triangulator {
                 self.corners.clear();
                 self.corners.extend(ring.iter().map(|&i| vertices[i as usize].map(f64::from)));
                 self.ears.clear();
-                // Seen from the side that its normal points to, so that earcut's triangles, which always turn
-                // counter-clockwise, turn as the polygon does.
+                // Projected along the normal, so that earcut's triangles, which are always counter-clockwise, have the
+                // winding order of the polygon.
                 if project3d_to_2d(&self.corners, ring.len(), &mut self.flat) {
                     self.earcut.earcut_slice(&self.flat, &[], &mut self.ears);
                 }
-                // Nothing to cut from a polygon without area: a fan keeps its neighbours connected.
+                // earcut returns nothing for a polygon without area; a fan keeps its neighbours connected.
                 if self.ears.is_empty() {
                     self.ears.extend((2..ring.len() as u32).flat_map(|i| [0, i - 1, i]));
                 }
@@ -46,14 +46,15 @@ impl Triangulator {
     }
 }
 
-/// A polygon that touches itself can yield a triangle with a repeated corner; it has no area and no meaning.
+/// Adds a triangle unless it repeats a corner, as a polygon that touches itself can cause.
 fn push(triangles: &mut Vec<[u32; 3]>, [a, b, c]: [u32; 3]) {
     if a != b && b != c && c != a {
         triangles.push([a, b, c]);
     }
 }
 
-/// Cuts along the diagonal whose two triangles turn the same way: the inner one, if the quad is concave.
+/// Cuts along the diagonal whose two triangles have the same winding order. In a concave quadrilateral it is the inner
+/// one.
 fn quad(p: &[[f64; 3]; 4]) -> [[usize; 3]; 2] {
     let candidates = [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]];
     let [first, second] = candidates.map(|[s, t]| {

@@ -1,4 +1,4 @@
-//! What every mesh reader collects, and the way from there to a sound mesh.
+//! The unchecked mesh that every reader fills, and its conversion to a valid mesh.
 
 use std::collections::HashMap;
 
@@ -7,27 +7,27 @@ use super::super::{FileError, Place};
 use super::MeshFile;
 use super::polygon::Triangulator;
 
-/// Vertices and polygons as they stand in the file, unchecked.
+/// Vertices and polygons of a file, unchecked.
 #[derive(Default)]
 pub(crate) struct RawMesh {
     pub(crate) vertices: Vec<[f32; 3]>,
-    /// The corners of all faces, one after the other.
+    /// Vertex indices of the corners of all faces, concatenated.
     corners: Vec<u32>,
     faces: Vec<RawFace>,
-    /// The first index that no u32 holds.
+    /// First index that does not fit in a u32.
     impossible: Option<(Place, i64)>,
     pub(crate) notes: Vec<String>,
 }
 
 struct RawFace {
-    /// Where its corners end.
+    /// End of its corners in `corners`.
     end: usize,
-    /// Its line in a text file, else 0.
+    /// Its line in a text file, 0 in other files.
     line: usize,
 }
 
 impl RawMesh {
-    /// Adds a polygon by the indices of its corners, counted from 0; `line` is 0 where there are no lines.
+    /// Adds a polygon by the vertex indices of its corners, counted from 0. `line` is 0 in files without lines.
     pub(crate) fn face(&mut self, corners: impl IntoIterator<Item = i64>, line: usize) {
         for index in corners {
             let corner = u32::try_from(index).unwrap_or_else(|_| {
@@ -44,12 +44,12 @@ impl RawMesh {
         self.faces.len()
     }
 
-    /// Vertices and corners of faces, together.
+    /// Number of vertices and face corners together.
     pub(crate) fn size(&self) -> usize {
         self.vertices.len() + self.corners.len()
     }
 
-    /// Checks, joins, triangulates.
+    /// Checks all indices and coordinates, merges equal vertices and triangulates the polygons.
     pub(crate) fn finish(self, source: &Source<'_>) -> Result<MeshFile, FileError> {
         if self.faces.is_empty() {
             let path = source.path.into();
@@ -61,13 +61,13 @@ impl RawMesh {
         let used = self.used(source)?;
         let Joined { vertices, new_index, places } = self.join(&used, source)?;
         let mut notes = self.notes;
-        // In an STL every corner is written anew: joining says nothing about the file.
+        // An STL repeats the vertex at every corner, so that merging is no news.
         if source.format != Format::Stl && vertices.len() < places {
-            notes.push(format!("{places} vertices stand at {} places and were joined.", vertices.len()));
+            notes.push(format!("{places} vertices at {} distinct positions were merged.", vertices.len()));
         }
         let unused = used.iter().filter(|used| !**used).count();
         if unused > 0 {
-            notes.push(format!("{unused} of {} vertices belong to no face and were left out.", used.len()));
+            notes.push(format!("{unused} of {} vertices belong to no face and were dropped.", used.len()));
         }
 
         let mut triangulator = Triangulator::default();
@@ -107,7 +107,7 @@ impl RawMesh {
         Ok(MeshFile { vertices, triangles, notes })
     }
 
-    /// Which vertices the faces use; an index that is out of range is an error.
+    /// Flags of the vertices that faces use. An index out of range is an error.
     fn used(&self, source: &Source<'_>) -> Result<Vec<bool>, FileError> {
         let first = if source.format == Format::Obj { 1 } else { 0 };
         let out_of_range = |place: Place, index: i64| FileError::IndexOutOfRange {
@@ -133,7 +133,7 @@ impl RawMesh {
         Ok(used)
     }
 
-    /// Makes one of all vertices at the same place, in the order of the file, and leaves out those that no face uses.
+    /// Merges vertices at the same position, in the order of the file, and drops those that no face uses.
     fn join(&self, used: &[bool], source: &Source<'_>) -> Result<Joined, FileError> {
         let mut by_place: HashMap<[u32; 3], u32> = HashMap::with_capacity(self.vertices.len());
         let mut vertices: Vec<[f32; 3]> = Vec::new();
@@ -147,7 +147,7 @@ impl RawMesh {
                 return Err(source.not_finite("vertex", old));
             }
             places += 1;
-            // Adding zero makes -0 the same place as 0.
+            // Adding zero turns -0 into 0.
             let next = vertices.len() as u32;
             let new = *by_place.entry(vertex.map(|x| (x + 0.0).to_bits())).or_insert(next);
             if new == next {
@@ -161,9 +161,9 @@ impl RawMesh {
 
 struct Joined {
     vertices: Vec<[f32; 3]>,
-    /// From the file's numbers to those of `vertices`.
+    /// Index in `vertices` of each vertex of the file.
     new_index: Vec<u32>,
-    /// How many vertices of the file are used.
+    /// Number of vertices of the file that are used.
     places: usize,
 }
 
@@ -171,14 +171,15 @@ fn place(face: usize, line: usize) -> Place {
     if line > 0 { Place::Line(line) } else { Place::Face(face) }
 }
 
-/// Differences and products of f32 are exact enough in f64 that only a true zero is zero.
+/// Whether the triangle has an area. Differences and products of f32 values are so accurate in f64 that only a true
+/// zero is zero.
 fn has_area(vertices: &[[f32; 3]], triangle: &[u32; 3]) -> bool {
     let [a, b, c] = triangle.map(|i| vertices[i as usize].map(f64::from));
     let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
     [(1, 2), (2, 0), (0, 1)].iter().any(|&(i, j)| u[i] * v[j] != u[j] * v[i])
 }
 
-/// A dropped face can leave vertices behind that nothing uses.
+/// Drops vertices that no triangle uses, which the removal of a face can leave behind.
 fn without_strays(vertices: Vec<[f32; 3]>, mut triangles: Vec<[u32; 3]>) -> (Vec<[f32; 3]>, Vec<[u32; 3]>) {
     let mut used = vec![false; vertices.len()];
     for &corner in triangles.as_flattened() {

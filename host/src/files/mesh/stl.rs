@@ -1,7 +1,8 @@
 //! STL, text and binary.
 //!
-//! Read by hand: stl_io 0.11 takes a binary file whose header begins with "solid " for text, reads only the first of several
-//! solids, and refuses the `facet normal nan nan nan` that exporters write for thin facets. Normals are not needed at all.
+//! The format is parsed here: stl_io 0.11 reads a binary file whose header begins with "solid " as text, reads only the
+//! first of several solids, and rejects the `facet normal nan nan nan` that exporters write for thin facets. Normals
+//! are ignored.
 
 use super::super::source::Source;
 use super::super::text::{lines, short, three};
@@ -13,7 +14,7 @@ const TRIANGLE: usize = 50;
 
 pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
     let bytes = &source.bytes;
-    // Only the length tells for sure: binary files with a header that begins with "solid" are common.
+    // Only the length is conclusive: binary files with a header that begins with "solid" are common.
     let count = bytes.get(80..HEADER).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize);
     let fits = count.is_some_and(|count| bytes.len() == HEADER + TRIANGLE * count);
     if !fits && is_text(bytes) { text(source) } else { binary(source, count) }
@@ -35,13 +36,13 @@ fn binary(source: &Source<'_>, count: Option<usize>) -> Result<RawMesh, FileErro
     let wanted = HEADER + TRIANGLE * count;
     if wanted > length {
         let reason =
-            format!("the header promises {count} triangles in {wanted} bytes, but there are {length}");
+            format!("the header declares {count} triangles in {wanted} bytes, but there are {length}");
         return Err(source.truncated(Place::Byte(length), reason));
     }
     let mut mesh = RawMesh::default();
     for triangle in source.bytes[HEADER..wanted].chunks_exact(TRIANGLE) {
         let first = mesh.vertices.len() as i64;
-        // Twelve bytes of normal, three vertices, two bytes for the maker's own use.
+        // Twelve bytes of normal, three vertices, two attribute bytes.
         mesh.vertices.extend(triangle[12..48].chunks_exact(12).map(|vertex| {
             [0, 4, 8].map(|k| f32::from_le_bytes([vertex[k], vertex[k + 1], vertex[k + 2], vertex[k + 3]]))
         }));
@@ -79,7 +80,7 @@ fn text(source: &Source<'_>) -> Result<RawMesh, FileError> {
                 mesh.face(facet_start as i64..mesh.vertices.len() as i64, number);
             }
             "outer" | "endloop" => {}
-            other => return Err(malformed(format!("did not expect \"{}\" here", short(other)))),
+            other => return Err(malformed(format!("unexpected \"{}\"", short(other)))),
         }
     }
     if in_solid || in_facet {

@@ -1,4 +1,4 @@
-//! Numbers out of buffers, with every offset checked.
+//! Reads numbers from buffers and checks every offset.
 
 use gltf::Accessor;
 use gltf::accessor::{DataType, Dimensions};
@@ -29,7 +29,7 @@ pub(super) fn indices(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Ve
     })
 }
 
-/// The bytes of each item, `size` of them.
+/// Iterates over the bytes of the items, each of `size` bytes.
 fn items<'a>(
     accessor: &Accessor<'_>,
     buffers: &'a [Vec<u8>],
@@ -42,9 +42,9 @@ fn items<'a>(
     let view = accessor.view().ok_or_else(|| format!("{name} has no buffer view; it may be compressed"))?;
     let stride = view.stride().unwrap_or(size);
     if stride < size {
-        return Err(format!("{name} has items of {size} bytes only {stride} bytes apart"));
+        return Err(format!("{name} has items of {size} bytes with a stride of only {stride} bytes"));
     }
-    // Where the last item ends, within the view.
+    // End of the last item within the view.
     let end = match accessor.count() {
         0 => Some(0),
         count => (count - 1)

@@ -1,4 +1,4 @@
-//! The bytes that a glTF's accessors point into.
+//! The buffers of a glTF file.
 
 use std::fs;
 
@@ -44,7 +44,7 @@ fn from_uri(source: &Source<'_>, uri: &str) -> Result<Vec<u8>, String> {
         return STANDARD.decode(payload).map_err(|e| format!("its data URI is not base64: {e}"));
     }
     if uri.contains("://") {
-        return Err(format!("it lies at {uri}, and nothing is fetched from the network"));
+        return Err(format!("its URI {uri} is remote, and nothing is fetched from the network"));
     }
     let name =
         percent_decode_str(uri).decode_utf8().map_err(|_| format!("its file name {uri} is not UTF-8"))?;

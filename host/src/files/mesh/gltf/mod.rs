@@ -1,7 +1,8 @@
 //! glTF 2.0, as one file (GLB) or as JSON with its buffers beside it or inside it.
 //!
-//! The gltf crate reads and checks the tree. Buffers are read here (`buffers`), for the crate's own import would fetch and
-//! decode every image too; so are the numbers in them (`accessor`), for its iterators trust offsets, counts and types.
+//! The gltf crate reads and validates the JSON. Buffers are read in `buffers`, because the crate's import would also
+//! load and decode every image. Their numbers are read in `accessor`, because the crate's iterators trust offsets,
+//! counts and types.
 
 mod accessor;
 mod buffers;
@@ -15,12 +16,13 @@ use super::super::source::Source;
 use super::super::{FileError, Place};
 use super::RawMesh;
 
-/// A node can use a mesh again and again, so that a small file can ask for any amount of memory.
+/// Largest number of vertices and face corners. Many nodes can use one mesh, so a small file could require any amount
+/// of memory.
 const MOST: usize = 100_000_000;
 
 pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
     let malformed = |reason: String| source.malformed(Place::Whole, reason);
-    // The crate subtracts the header's own 12 bytes from the length that it tells, unasked.
+    // The crate subtracts the 12 bytes of the header from the declared length without a check.
     if source.bytes.starts_with(b"glTF") {
         match source.bytes.get(8..12).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize) {
             Some(length) if length < 12 => {
@@ -29,7 +31,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
             Some(length) if length <= source.bytes.len() => {}
             Some(length) => {
                 let reason =
-                    format!("the header promises {length} bytes, but there are {}", source.bytes.len());
+                    format!("the header declares {length} bytes, but there are {}", source.bytes.len());
                 return Err(source.truncated(Place::Byte(source.bytes.len()), reason));
             }
             None => {
@@ -54,8 +56,8 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
     Ok(scene.finish())
 }
 
-/// Has the crate check every index and type of the tree, after two of its own weaknesses: it looks a POSITION's accessor up
-/// before it knows that there is one, and it insists on bounds, which exporters forget and nobody here needs.
+/// Has the crate validate every index and type, after working around two defects: it looks up the accessor of POSITION
+/// without a check, and it requires bounds, which exporters omit and which are not needed here.
 fn validate(document: Document) -> Result<Document, String> {
     let mut root = document.into_json();
     for (number, mesh) in root.meshes.iter().enumerate() {
@@ -64,10 +66,7 @@ fn validate(document: Document) -> Result<Document, String> {
                 continue;
             };
             let Some(accessor) = root.accessors.get_mut(positions.value()) else {
-                return Err(format!(
-                    "mesh {number} asks for accessor {}, which is missing",
-                    positions.value()
-                ));
+                return Err(format!("mesh {number} uses accessor {}, which is missing", positions.value()));
             };
             for bound in [&mut accessor.min, &mut accessor.max] {
                 bound.get_or_insert_with(|| vec![0.0; 3].into());
@@ -77,12 +76,12 @@ fn validate(document: Document) -> Result<Document, String> {
     Document::from_json(root).map_err(|e| reason(&e))
 }
 
-/// What the crate says; of a long list the first entry.
+/// The message of the crate, reduced to the first entry of a list.
 fn reason(error: &gltf::Error) -> String {
     match error {
         gltf::Error::Validation(list) => match list.first() {
             Some((path, Fault::Unsupported)) => {
-                format!("{path} names an extension that is not read here")
+                format!("{path} names an unsupported extension")
             }
             Some((path, error)) => format!("{path}: {error}"),
             None => error.to_string(),
@@ -95,8 +94,9 @@ struct Scene<'a> {
     source: &'a Source<'a>,
     buffers: Vec<Vec<u8>>,
     mesh: RawMesh,
-    /// Primitives of points and lines.
+    /// Number of primitives that are points or lines.
     others: usize,
+    /// Number of meshes with a skeleton.
     skinned: usize,
 }
 
@@ -114,7 +114,7 @@ impl Scene<'_> {
             _ => document.scenes().flat_map(|s| s.nodes()).map(|n| (n, Matrix4::identity())).collect(),
         };
         pending.reverse();
-        // By the rules a node has one parent. Where a file breaks them, this also ends a circle.
+        // A valid node has one parent. In an invalid file this also ends a cycle.
         let mut visited = vec![false; document.nodes().len()];
         while let Some((node, parent)) = pending.pop() {
             if std::mem::replace(&mut visited[node.index()], true) {
@@ -173,7 +173,7 @@ impl Scene<'_> {
             let p = transform.transform_point(&Point3::from(p.map(f64::from)));
             [p.x as f32, p.y as f32, p.z as f32]
         }));
-        // A mirroring turns triangles inside out.
+        // A reflection reverses the winding order.
         let mirrored = transform.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
         let mut add = |[a, b, c]: [u32; 3]| {
             let corners = if mirrored { [a, c, b] } else { [a, b, c] };
@@ -201,14 +201,12 @@ impl Scene<'_> {
 
     fn finish(mut self) -> RawMesh {
         if self.others > 0 {
-            self.mesh
-                .notes
-                .push(format!("{} primitives are points or lines and were left out.", self.others));
+            self.mesh.notes.push(format!("{} primitives are points or lines and were ignored.", self.others));
         }
         if self.skinned > 0 {
             self.mesh
                 .notes
-                .push(format!("{} meshes have a skeleton and were read as if at rest.", self.skinned));
+                .push(format!("{} meshes have a skeleton and were read in their bind pose.", self.skinned));
         }
         self.mesh
     }

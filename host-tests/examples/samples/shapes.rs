@@ -1,40 +1,15 @@
-//! Closed triangle meshes from a few rules: revolve, sweep, box.
+//! Closed triangle meshes by revolution, sweep, prism and chamfered box.
+//!
+//! The vertex order and the sweep's tangents differ from those of the library's builder, and the published bytes of
+//! `samples/` depend on both.
 
-use std::f64::consts::{PI, TAU};
+use host_tests::shapes::vector::{
+    V, add, cos_sin, cross, dot, face_outwards, frames, scale, sub, turn, unit,
+};
+use host_tests::winding::Winding;
+use std::f64::consts::TAU;
 
-/// x, y, z in metres.
-pub(crate) type V = [f64; 3];
-
-pub(crate) fn add(a: V, b: V) -> V {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
-}
-
-pub(crate) fn sub(a: V, b: V) -> V {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(crate) fn scale(a: V, s: f64) -> V {
-    a.map(|c| c * s)
-}
-
-pub(crate) fn dot(a: V, b: V) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(crate) fn cross(a: V, b: V) -> V {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-pub(crate) fn unit(a: V) -> V {
-    scale(a, 1.0 / dot(a, a).sqrt())
-}
-
-/// The cosine and the sine, the same on every machine.
-pub(crate) fn turn(angle: f64) -> (f64, f64) {
-    (libm::cos(angle), libm::sin(angle))
-}
-
-/// One closed surface, its triangles anticlockwise seen from outside.
+/// One closed surface with triangles that are counter-clockwise seen from outside.
 #[derive(Clone, Default)]
 pub(crate) struct Body {
     pub(crate) vertices: Vec<V>,
@@ -42,18 +17,8 @@ pub(crate) struct Body {
 }
 
 impl Body {
-    /// Six times the signed volume.
-    fn volume(&self) -> f64 {
-        let corner = |t: &[usize; 3], i: usize| self.vertices[t[i]];
-        self.triangles.iter().map(|t| dot(corner(t, 0), cross(corner(t, 1), corner(t, 2)))).sum()
-    }
-
     fn outward(mut self) -> Self {
-        if self.volume() < 0.0 {
-            for t in &mut self.triangles {
-                t.swap(1, 2);
-            }
-        }
+        face_outwards(&self.vertices, &mut self.triangles);
         self
     }
 
@@ -79,14 +44,13 @@ impl Body {
         }
     }
 
-    /// The solid that a closed outline of (radius, z) makes about the z axis; where the radius is 0 it meets the axis,
-    /// and there the outline begins and ends.
+    /// The solid of revolution of an outline of (radius, z) about the z axis. The outline begins and ends on the axis.
     pub(crate) fn revolve(outline: &[(f64, f64)], count: usize) -> Self {
         let mut body = Self::default();
         let rings: Vec<usize> = (outline[1..outline.len() - 1].iter())
             .map(|&(r, z)| {
                 body.ring((0..count).map(|i| {
-                    let (cos, sin) = turn(TAU * i as f64 / count as f64);
+                    let [cos, sin] = cos_sin(TAU * i as f64 / count as f64);
                     [r * cos, r * sin, z]
                 }))
             })
@@ -94,7 +58,7 @@ impl Body {
         for pair in rings.windows(2) {
             body.bridge(pair[0], pair[1], count);
         }
-        // The two poles; the cap at the start looks the other way.
+        // Caps at the two poles. The first faces the opposite way.
         let start = body.triangles.len();
         body.cap(rings[0], [0.0, 0.0, outline[0].1], count);
         for t in &mut body.triangles[start..] {
@@ -104,8 +68,8 @@ impl Body {
         body.outward()
     }
 
-    /// An ellipse of half axes `a` (along `side` where the path starts) and `b`, carried along the path without
-    /// twist. A path that ends where it began closes; any other ends round or flat, as `round` says of its two ends.
+    /// An ellipse swept along a path without twist, with half axes `a`, initially along `side`, and `b`. A path that
+    /// ends at its first point gives a closed sweep. Otherwise `round` states for each end whether it is round or flat.
     pub(crate) fn sweep(path: &[V], side: V, [a, b]: [f64; 2], count: usize, round: [bool; 2]) -> Self {
         let closed = path[0] == path[path.len() - 1];
         let n = if closed { path.len() - 1 } else { path.len() };
@@ -117,33 +81,31 @@ impl Body {
             };
             unit(sub(path[after], path[before]))
         };
+        let tangents: Vec<V> = (0..n).map(tangent).collect();
         let mut body = Self::default();
         let mut rings = Vec::new();
-        let mut u = side;
-        let ellipse = |centre: V, t: V, u: V, size: f64| {
-            let v = cross(t, u);
+        let ellipse = |centre: V, [u, v]: [V; 2], size: f64| {
             (0..count).map(move |k| {
-                let (cos, sin) = turn(TAU * k as f64 / count as f64);
+                let [cos, sin] = cos_sin(TAU * k as f64 / count as f64);
                 add(centre, add(scale(u, a * size * cos), scale(v, b * size * sin)))
             })
         };
-        // A quarter of a circle, seen from the side, in this many steps.
+        // Steps of the quarter circle in the profile of a round end.
         let steps = 4;
-        let rounding = |k: usize| turn(0.5 * PI * k as f64 / steps as f64);
-        for (i, &centre) in path[..n].iter().enumerate() {
-            let t = tangent(i);
-            u = unit(sub(u, scale(t, dot(u, t))));
+        let rounding = |k: usize| turn(90.0 * k as f64 / steps as f64);
+        for (i, (&centre, frame)) in path.iter().zip(frames(&tangents, side)).enumerate() {
+            let t = tangents[i];
             if !closed && i == 0 && round[0] {
                 for k in (1..steps).rev() {
-                    let (size, back) = rounding(k);
-                    rings.push(body.ring(ellipse(add(centre, scale(t, -b * back)), t, u, size)));
+                    let [size, back] = rounding(k);
+                    rings.push(body.ring(ellipse(add(centre, scale(t, -b * back)), frame, size)));
                 }
             }
-            rings.push(body.ring(ellipse(centre, t, u, 1.0)));
+            rings.push(body.ring(ellipse(centre, frame, 1.0)));
             if !closed && i == n - 1 && round[1] {
                 for k in 1..steps {
-                    let (size, forth) = rounding(k);
-                    rings.push(body.ring(ellipse(add(centre, scale(t, b * forth)), t, u, size)));
+                    let [size, forth] = rounding(k);
+                    rings.push(body.ring(ellipse(add(centre, scale(t, b * forth)), frame, size)));
                 }
             }
         }
@@ -155,9 +117,9 @@ impl Body {
             body.bridge(last, rings[0], count);
         } else {
             let reach = round.map(|round| if round { b } else { 0.0 });
-            body.cap(last, add(path[n - 1], scale(tangent(n - 1), reach[1])), count);
+            body.cap(last, add(path[n - 1], scale(tangents[n - 1], reach[1])), count);
             let start = body.triangles.len();
-            body.cap(rings[0], add(path[0], scale(tangent(0), -reach[0])), count);
+            body.cap(rings[0], add(path[0], scale(tangents[0], -reach[0])), count);
             for t in &mut body.triangles[start..] {
                 t.swap(0, 1);
             }
@@ -165,7 +127,7 @@ impl Body {
         body.outward()
     }
 
-    /// A convex outline in the x-y plane, from `low` to `high` in z.
+    /// A prism over a convex outline in the x-y plane, from `low` to `high` in z.
     pub(crate) fn prism(outline: &[[f64; 2]], low: f64, high: f64) -> Self {
         let count = outline.len();
         let mut body = Self::default();
@@ -179,11 +141,11 @@ impl Body {
         body.outward()
     }
 
-    /// A box about `centre` with its eight corners' edges along the axes cut by `chamfer`: each face a smaller
-    /// rectangle, joined by strips and corner triangles.
+    /// A box about `centre` with edges chamfered by `chamfer`: six rectangles, joined by strips along the edges and by
+    /// triangles at the corners.
     pub(crate) fn cuboid(centre: V, size: V, chamfer: f64) -> Self {
         let mut body = Self::default();
-        // Corner (sx, sy, sz) has three vertices, one on each face that meets there.
+        // Each corner has three vertices, one on each of the faces that meet there.
         let index = |corner: usize, axis: usize| corner * 3 + axis;
         for corner in 0..8usize {
             for axis in 0..3 {
@@ -199,10 +161,10 @@ impl Body {
             let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
             for side in 0..2usize {
                 let c = |a: usize, b: usize| (side << axis) | (a << j) | (b << k);
-                // The face, and the strip along the edge parallel to `axis` that (side, other) name below.
+                // The rectangle of the face.
                 faces.push([c(0, 0), c(1, 0), c(1, 1), c(0, 1)].map(|corner| index(corner, axis)).to_vec());
                 for other in 0..2usize {
-                    // The edge along k where faces `axis` and `j` meet.
+                    // The strip along k between the faces of `axis` and `j`.
                     let (p, q) = (c(other, 0), c(other, 1));
                     faces.push(vec![index(p, axis), index(q, axis), index(q, j), index(p, j)]);
                 }
@@ -215,7 +177,7 @@ impl Body {
             for i in 1..face.len() - 1 {
                 let mut t = [face[0], face[i], face[i + 1]];
                 let [a, b, c] = t.map(|v| body.vertices[v]);
-                // Convex, so that outward is away from the centre.
+                // The box is convex, so outward is away from the centre.
                 if dot(cross(sub(b, a), sub(c, a)), sub(a, centre)) < 0.0 {
                     t.swap(1, 2);
                 }
@@ -225,43 +187,13 @@ impl Body {
         body
     }
 
-    /// Winding number 1 within, 0 without (Van Oosterom and Strackee's solid angles).
-    pub(crate) fn contains(&self, p: V) -> bool {
-        let mut angle = 0.0;
-        for t in &self.triangles {
-            let [a, b, c] = t.map(|v| sub(self.vertices[v], p));
-            let [la, lb, lc] = [a, b, c].map(|v| dot(v, v).sqrt());
-            let numerator = dot(a, cross(b, c));
-            let denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-            angle += libm::atan2(numerator, denominator);
-        }
-        angle > PI
-    }
-
-    /// The box that holds it, as (low, high).
-    pub(crate) fn bounds(&self) -> (V, V) {
-        let mut bounds = ([f64::MAX; 3], [f64::MIN; 3]);
-        for v in &self.vertices {
-            for (i, &c) in v.iter().enumerate() {
-                bounds.0[i] = bounds.0[i].min(c);
-                bounds.1[i] = bounds.1[i].max(c);
-            }
-        }
-        bounds
+    /// The winding number of the surface.
+    pub(crate) fn winding(&self) -> Winding {
+        Winding::new(self.triangles.iter().map(|t| t.map(|v| self.vertices[v].into())))
     }
 }
 
-/// A point `steps` times on the arc about `centre` from `from` to `to` degrees, in the plane of `x` and `y`.
-pub(crate) fn arc(centre: V, [x, y]: [V; 2], radii: [f64; 2], [from, to]: [f64; 2], steps: usize) -> Vec<V> {
-    (0..=steps)
-        .map(|i| {
-            let (cos, sin) = turn((from + (to - from) * i as f64 / steps as f64) * PI / 180.0);
-            add(centre, add(scale(x, radii[0] * cos), scale(y, radii[1] * sin)))
-        })
-        .collect()
-}
-
-/// The points of a straight line, both ends among them.
+/// `steps` + 1 points on a straight line, including both ends.
 pub(crate) fn line(a: V, b: V, steps: usize) -> Vec<V> {
     (0..=steps).map(|i| add(a, scale(sub(b, a), i as f64 / steps as f64))).collect()
 }

@@ -1,6 +1,6 @@
-//! Writes the shapes of `samples/`, byte for byte the same on every machine; with `--check` only compares.
+//! Writes the files of `samples/`, with the same bytes on every machine. With `--check` it only compares them.
 //!
-//! All are meshes in metres with z up; of the supporters also the point clouds that a depth camera would give.
+//! All shapes are meshes in metres with z up. The supporters are also written as point clouds.
 
 mod shapes;
 
@@ -8,16 +8,15 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
-use shapes::{Body, V, add, arc, cross, dot, line, scale, sub, turn, unit};
+use host_tests::shapes::Random;
+use host_tests::shapes::vector::{V, X, Y, Z, add, arc, cross, length, scale, sub, turn, unit};
+use host_tests::winding::Winding;
+use shapes::{Body, line};
 
-/// A mesh of closed bodies that may reach into each other, each with its name.
+/// Named closed bodies, which may overlap.
 type Mesh = Vec<(&'static str, Body)>;
 
-const X: V = [1.0, 0.0, 0.0];
-const Y: V = [0.0, 1.0, 0.0];
-const Z: V = [0.0, 0.0, 1.0];
-
-/// A mug of 3.5 dl: the cup stands on z = 0 about the z axis, the handle is on the side of +x.
+/// A mug of 3.5 dl. The cup stands on z = 0 about the z axis; the handle is on the side of +x.
 fn mug() -> Mesh {
     let mut outline =
         vec![(0.0, 0.0), (0.012, 0.0), (0.025, 0.0), (0.037, 0.0), (0.0398, 0.0012), (0.041, 0.004)];
@@ -25,25 +24,25 @@ fn mug() -> Mesh {
     outline.extend([(0.0404, 0.0944), (0.039, 0.095), (0.0376, 0.0944)]);
     outline.extend((0..=12).map(|i| (0.037, 0.093 - 0.085 * f64::from(i) / 12.0)));
     outline.extend([(0.0358, 0.0052), (0.033, 0.004), (0.022, 0.004), (0.011, 0.004), (0.0, 0.004)]);
-    // Its ends lie inside the wall; the hole between it and the wall is 22 mm by 45 mm.
+    // The ends of the handle lie inside the wall; its hole is 22 mm by 45 mm.
     let mut path = line([0.0385, 0.0, 0.075], [0.052, 0.0, 0.075], 4);
-    path.extend(&arc([0.052, 0.0, 0.059], [X, Z], [0.016; 2], [90.0, 0.0], 10)[1..]);
+    path.extend(&arc([0.052, 0.0, 0.059], scale(X, 0.016), scale(Z, 0.016), [90.0, 0.0], 10)[1..]);
     path.extend(&line([0.068, 0.0, 0.059], [0.068, 0.0, 0.036], 8)[1..]);
-    path.extend(&arc([0.052, 0.0, 0.036], [X, Z], [0.016; 2], [0.0, -90.0], 10)[1..]);
+    path.extend(&arc([0.052, 0.0, 0.036], scale(X, 0.016), scale(Z, 0.016), [0.0, -90.0], 10)[1..]);
     path.extend(&line([0.052, 0.0, 0.020], [0.0385, 0.0, 0.020], 4)[1..]);
     let handle = Body::sweep(&path, Y, [0.006, 0.005], 24, [false; 2]);
     vec![("cup", Body::revolve(&outline, 72)), ("handle", handle)]
 }
 
-/// Closed scissors, flat in the x-y plane: the screw at the origin, the tips at +x, the loops at -x.
+/// Closed scissors in the x-y plane, with the screw at the origin, the tips at +x and the loops at -x.
 fn scissors() -> Mesh {
     let mut mesh = Mesh::new();
     let names = [["loop_left", "shank_left", "blade_left"], ["loop_right", "shank_right", "blade_right"]];
     for (names, side) in names.into_iter().zip([1.0, -1.0]) {
-        let mut path = arc([-0.062, side * 0.0205, 0.0], [X, Y], [0.022, 0.0165], [0.0, 360.0], 56);
+        let mut path = arc([-0.062, side * 0.0205, 0.0], scale(X, 0.022), scale(Y, 0.0165), [0.0, 360.0], 56);
         path[56] = path[0];
         mesh.push((names[0], Body::sweep(&path, Z, [0.0035, 0.0035], 20, [true; 2])));
-        // From the loop to the blade on the other side, one above the other where they cross.
+        // From the loop to the blade on the other side; the shanks pass each other in z where they cross.
         let z = side * 0.00135;
         let path = line([-0.0425, side * 0.0135, z / 2.0], [-0.004, side * 0.0005, z], 12);
         mesh.push((names[1], Body::sweep(&path, Z, [0.0014, 0.0032], 20, [true; 2])));
@@ -72,17 +71,17 @@ fn scissors() -> Mesh {
     mesh
 }
 
-/// A hook on a wall: the plate's front at x = 0, the hook out along +x, far enough for a mug beside the plate, and
-/// up at its tip.
+/// A hook on a wall plate with its front at x = 0. The hook points along +x, long enough for a mug beside the plate,
+/// and its tip points up.
 fn hook() -> Mesh {
     let plate = Body::cuboid([-0.0025, 0.0, 0.0], [0.005, 0.04, 0.08], 0.001);
     let mut path = line([-0.003, 0.0, 0.0], [0.078, 0.0, 0.0], 27);
-    path.extend(&arc([0.078, 0.0, 0.012], [X, Z], [0.012; 2], [-90.0, 0.0], 12)[1..]);
+    path.extend(&arc([0.078, 0.0, 0.012], scale(X, 0.012), scale(Z, 0.012), [-90.0, 0.0], 12)[1..]);
     path.extend(&line([0.090, 0.0, 0.012], [0.090, 0.0, 0.024], 4)[1..]);
     vec![("plate", plate), ("hook", Body::sweep(&path, Y, [0.004; 2], 24, [false, true]))]
 }
 
-/// A stand for six mugs: a disc, a post about the z axis, and pegs that rise by 20 degrees.
+/// A stand for six mugs: a disc, a post about the z axis, and pegs that are tilted up by 20 degrees.
 fn mug_tree() -> Mesh {
     let base = [
         (0.0, 0.0),
@@ -98,9 +97,9 @@ fn mug_tree() -> Mesh {
     post.extend([(0.0069, 0.296), (0.004, 0.2989), (0.0, 0.3)]);
     let mut mesh = vec![("base", Body::revolve(&base, 72)), ("post", Body::revolve(&post, 32))];
     let names = ["peg_1", "peg_2", "peg_3", "peg_4", "peg_5", "peg_6"];
-    let (cos, sin) = turn(20f64.to_radians());
+    let [cos, sin] = turn(20.0);
     for (i, name) in names.into_iter().enumerate() {
-        let (x, y) = turn(f64::from(60 * (i as u32 / 2) + 180 * (i as u32 % 2)).to_radians());
+        let [x, y] = turn(f64::from(60 * (i as u32 / 2) + 180 * (i as u32 % 2)));
         let along = [cos * x, cos * y, sin];
         let start = [0.0, 0.0, 0.14 + 0.06 * (i / 2) as f64];
         let path = line(add(start, scale(along, 0.002)), add(start, scale(along, 0.0735)), 24);
@@ -109,47 +108,31 @@ fn mug_tree() -> Mesh {
     mesh
 }
 
-/// splitmix64
-struct Random(u64);
-
-impl Random {
-    /// From 0 to 1, without 1.
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
-/// `n` points evenly on what can be seen of the mesh from outside, and the normals there.
+/// `n` points and normals, uniform on the part of the surface that no other body contains.
 fn sample_cloud(mesh: &Mesh, n: usize, seed: u64) -> (Vec<V>, Vec<V>) {
-    let mut random = Random(seed);
-    let bounds: Vec<(V, V)> = mesh.iter().map(|(_, body)| body.bounds()).collect();
+    let mut random = Random::new(seed);
+    let windings: Vec<Winding> = mesh.iter().map(|(_, body)| body.winding()).collect();
     let mut triangles = Vec::new();
     let mut total = 0.0;
     for (owner, (_, body)) in mesh.iter().enumerate() {
         for t in &body.triangles {
             let [a, b, c] = t.map(|i| body.vertices[i]);
             let normal = cross(sub(b, a), sub(c, a));
-            total += dot(normal, normal).sqrt();
+            total += length(normal);
             triangles.push((total, owner, [a, b, c], unit(normal)));
         }
     }
     let (mut points, mut normals) = (Vec::new(), Vec::new());
     while points.len() < n {
-        let pick = random.next() * total;
-        let (mut u, mut v) = (random.next(), random.next());
+        let pick = random.range(0.0, 1.0) * total;
+        let (mut u, mut v) = (random.range(0.0, 1.0), random.range(0.0, 1.0));
         if u + v > 1.0 {
             (u, v) = (1.0 - u, 1.0 - v);
         }
         let &(_, owner, [a, b, c], normal) = &triangles[triangles.partition_point(|t| t.0 <= pick)];
         let p = add(a, add(scale(sub(b, a), u), scale(sub(c, a), v)));
-        let hidden = mesh.iter().enumerate().any(|(other, (_, body))| {
-            let (low, high) = bounds[other];
-            other != owner && (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i]) && body.contains(p)
-        });
+        let mut others = windings.iter().enumerate().filter(|(other, _)| *other != owner);
+        let hidden = others.any(|(_, winding)| winding.number(&p.into()) > 0.5);
         if !hidden {
             points.push(p);
             normals.push(normal);
@@ -164,7 +147,7 @@ fn obj(mesh: &Mesh) -> Vec<u8> {
     for (name, body) in mesh {
         writeln!(text, "o {name}").unwrap();
         for [x, y, z] in &body.vertices {
-            // Adding 0 makes -0 a plain 0.
+            // Adding zero turns -0 into 0.
             let micrometres = |c: f64| (c * 1e6).round() / 1e6 + 0.0;
             writeln!(text, "v {:.6} {:.6} {:.6}", micrometres(*x), micrometres(*y), micrometres(*z)).unwrap();
         }
@@ -196,7 +179,7 @@ fn main() -> ExitCode {
         None => false,
         Some("--check") => true,
         Some(other) => {
-            eprintln!("samples: {other}? There is only --check.");
+            eprintln!("samples: unknown option {other}; the only option is --check");
             return ExitCode::from(2);
         }
     };
@@ -228,11 +211,11 @@ fn main() -> ExitCode {
         match std::fs::read(&path) {
             Ok(there) if there == bytes => {}
             Ok(_) => {
-                eprintln!("samples/{name} is not what the generator makes; `make samples` writes it anew");
+                eprintln!("samples/{name} differs from the generated file; run `make samples` to write it");
                 all_well = false;
             }
             Err(error) => {
-                eprintln!("samples/{name}: {error}; `make samples` writes it");
+                eprintln!("samples/{name}: {error}; run `make samples` to write it");
                 all_well = false;
             }
         }
