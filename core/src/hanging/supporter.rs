@@ -42,6 +42,8 @@ pub struct NormalCounts {
     pub estimated: usize,
     /// Normals that were not of unit length, and were scaled to it.
     pub renormalised: usize,
+    /// Normals that were given and reversed: all of them, where they pointed into the solid, or some, where their signs did not agree.
+    pub reversed: usize,
 }
 
 impl<'m> Supporter<'m> {
@@ -90,8 +92,8 @@ impl<'m> Supporter<'m> {
             }
         }
         let viewpoint = cloud.viewpoint();
-        normals.estimated =
-            normals::complete(&tree, in_tree_order, viewpoint, params.up(), scratch.scratch())?;
+        let completed = normals::complete(&tree, in_tree_order, viewpoint, params.up(), scratch.scratch())?;
+        (normals.estimated, normals.reversed) = (completed.estimated, completed.reversed);
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
 
         let support = match params.uses_mechanics() {

@@ -1,4 +1,5 @@
 //! From what a sensor or a file gives to what the method works on.
 
 pub mod normals;
+mod orientation;
 pub mod sampling;

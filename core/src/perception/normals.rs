@@ -1,8 +1,8 @@
 //! Normals for clouds that have none: the direction in which a neighbourhood is thinnest, and which side of it
 //! is outside.
 
+use super::orientation::{self, Given};
 use crate::geometry::{Neighbour, Point, PointTree, Vector, least_eigenvector};
-use crate::heap::Heap;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use nalgebra::Matrix3;
 
@@ -11,34 +11,69 @@ const NEIGHBOURS: usize = 16;
 
 /// Bytes of working memory for a cloud of `points`.
 pub(crate) const fn scratch_bytes(points: usize) -> usize {
-    array_bytes::<u32>(points).saturating_mul(5)
+    array_bytes::<u32>(points).saturating_add(orientation::scratch_bytes(points))
 }
 
-/// Fills in the normals, in tree order, that are zero, and returns how many they were.
+/// What had to be done to the normals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Completed {
+    /// Normals that were missing and were estimated.
+    pub(crate) estimated: usize,
+    /// Given normals that were reversed: all of them, because they pointed into the solid, or those whose sign did not agree with the
+    /// others.
+    pub(crate) reversed: usize,
+}
+
+/// Fills in the normals, in tree order, that are zero, and reverses given ones that point into the solid or at random.
 ///
-/// Where some normals are known, the others are turned like the known ones around them. Where none is, they face
-/// the `viewpoint` if there is one, and else are made consistent from point to point, from the top of each part
-/// of the cloud on, where outside is `up` (Hoppe et al. 1992, "Surface Reconstruction from Unorganized Points").
+/// Where some normals are known, the others take the side of the known ones around them. Where none is, or the known ones have no
+/// consistent side, they face the `viewpoint` if there is one, and otherwise the outside that [`orientation::orient`] finds.
 pub(crate) fn complete(
     tree: &PointTree,
     normals: &mut [Vector],
     viewpoint: Option<Point>,
     up: Vector,
-    scratch: Arena,
-) -> Result<usize, OutOfMemory> {
+    mut scratch: Arena,
+) -> Result<Completed, OutOfMemory> {
     let missing = normals.iter().filter(|n| **n == Vector::zeros()).count();
+    let mut completed = Completed { estimated: missing, reversed: 0 };
+    let orient = |normals: &mut [Vector], scratch| match viewpoint {
+        Some(viewpoint) => {
+            face(tree, normals, viewpoint);
+            Ok(())
+        }
+        None => orientation::orient(tree, normals, up, scratch),
+    };
     if missing == normals.len() {
         for (normal, point) in normals.iter_mut().zip(tree.points()) {
             *normal = fit(tree, point);
         }
-        match viewpoint {
-            Some(viewpoint) => face(tree, normals, viewpoint),
-            None => propagate(tree, normals, up, scratch)?,
-        }
-    } else if missing > 0 {
-        follow_neighbours(tree, normals, up, scratch)?;
+        orient(normals, scratch)?;
+        return Ok(completed);
     }
-    Ok(missing)
+    if missing > 0 {
+        follow_neighbours(tree, normals, up, scratch.scratch())?;
+    }
+    match orientation::judge(tree, normals) {
+        Given::Outwards => {}
+        Given::Inwards => {
+            normals.iter_mut().for_each(|normal| *normal = -*normal);
+            completed.reversed = normals.len();
+        }
+        Given::Unoriented => {
+            let first = |normal: &Vector| u32::from(leading_sign(normal));
+            let before = scratch.slice::<u32>(normals.len())?;
+            before.iter_mut().zip(normals.iter()).for_each(|(before, normal)| *before = first(normal));
+            orient(normals, scratch)?;
+            completed.reversed = before.iter().zip(normals.iter()).filter(|(b, n)| **b != first(n)).count();
+        }
+    }
+    Ok(completed)
+}
+
+/// The sign of the first component that is not zero, true if positive.
+fn leading_sign(normal: &Vector) -> bool {
+    normal.iter().find(|x| **x != 0.0).is_some_and(|x| *x > 0.0)
 }
 
 /// The direction, of either sign, in which the neighbourhood of `point` is thinnest.
@@ -60,51 +95,6 @@ fn face(tree: &PointTree, normals: &mut [Vector], viewpoint: Point) {
             *normal = -*normal;
         }
     }
-}
-
-/// Turns all normals consistently along a tree that crosses the sharpest bends last.
-fn propagate(
-    tree: &PointTree,
-    normals: &mut [Vector],
-    up: Vector,
-    mut scratch: Arena,
-) -> Result<(), OutOfMemory> {
-    let points = tree.points();
-    let from_top = scratch.slice::<u32>(points.len())?;
-    let parents = scratch.slice::<u32>(points.len())?;
-    let weights = scratch.slice::<f32>(points.len())?;
-    let (order, places) = (scratch.slice::<u32>(points.len())?, scratch.slice::<u32>(points.len())?);
-    for (slot, index) in from_top.iter_mut().zip(0..) {
-        *slot = index;
-    }
-    let height = |&index: &u32| points[index as usize].coords.dot(&up);
-    from_top.sort_unstable_by(|a, b| height(b).total_cmp(&height(a)).then(a.cmp(b)));
-    // A point that is done is its own parent no more.
-    const WAITING: u32 = u32::MAX;
-    const DONE: u32 = u32::MAX - 1;
-    parents.fill(WAITING);
-    let mut heap = Heap::empty(weights, order, places);
-    for &top in from_top.iter() {
-        if parents[top as usize] == DONE {
-            continue;
-        }
-        heap.offer(top as usize, 0.0);
-        while let Some(index) = heap.pop() {
-            let like = if parents[index] == WAITING { up } else { normals[parents[index] as usize] };
-            if normals[index].dot(&like) < 0.0 {
-                normals[index] = -normals[index];
-            }
-            parents[index] = DONE;
-            let mut found = [Neighbour::default(); NEIGHBOURS];
-            for neighbour in tree.k_nearest(&points[index], &mut found) {
-                let other = neighbour.index as usize;
-                if parents[other] != DONE && heap.offer(other, normals[index].dot(&normals[other]).abs()) {
-                    parents[other] = index as u32;
-                }
-            }
-        }
-    }
-    Ok(())
 }
 
 /// Fits the missing normals and turns them like the known ones around them, or up where there are none.
@@ -146,7 +136,7 @@ mod tests {
     fn with_completed(
         known: impl Fn(usize, Vector) -> Vector,
         viewpoint: Option<Point>,
-        check: impl Fn(&[Point], &[Vector], &[Vector], usize),
+        check: impl Fn(&[Point], &[Vector], &[Vector], Completed),
     ) {
         let turn = nalgebra::Rotation3::from_euler_angles(0.4, 0.2, 0.0);
         let shape = test_shapes::torus(0.04, 0.012, 64, 32).map(|p| turn * p);
@@ -163,8 +153,8 @@ mod tests {
         let truth: Vec<Vector> = tree.order().iter().map(|&i| truth[i as usize].into()).collect();
         let mut normals: Vec<Vector> =
             truth.iter().enumerate().map(|(i, &normal)| known(i, normal)).collect();
-        let missing = complete(&tree, &mut normals, viewpoint, Vector::z(), arena.scratch()).unwrap();
-        check(tree.points(), &truth, &normals, missing);
+        let completed = complete(&tree, &mut normals, viewpoint, Vector::z(), arena.scratch()).unwrap();
+        check(tree.points(), &truth, &normals, completed);
     }
 
     #[test]
@@ -172,8 +162,8 @@ mod tests {
         with_completed(
             |_, _| Vector::zeros(),
             None,
-            |_, truth, normals, missing| {
-                assert_eq!(missing, 3000);
+            |_, truth, normals, completed| {
+                assert_eq!(completed, Completed { estimated: 3000, reversed: 0 });
                 assert!(truth.iter().zip(normals).all(|(t, n)| t.dot(n) > 0.95));
             },
         );
@@ -195,12 +185,50 @@ mod tests {
 
     #[test]
     fn a_few_missing_ones_follow_their_neighbours() {
-        // Known normals point inwards here, to see that they are what is followed.
+        // Known normals point inwards here, so that the missing ones are seen to follow them; then all are reversed.
         let known = |i: usize, normal: Vector| if i.is_multiple_of(7) { Vector::zeros() } else { -normal };
-        with_completed(known, None, |_, truth, normals, missing| {
-            assert_eq!(missing, 3000_usize.div_ceil(7));
-            assert!(truth.iter().zip(normals).all(|(t, n)| t.dot(n) < -0.95));
+        with_completed(known, None, |_, truth, normals, completed| {
+            assert_eq!(completed, Completed { estimated: 3000_usize.div_ceil(7), reversed: 3000 });
+            assert!(truth.iter().zip(normals).all(|(t, n)| t.dot(n) > 0.95));
         });
+    }
+
+    #[test]
+    fn given_normals_that_point_inwards_are_reversed() {
+        with_completed(
+            |_, normal| -normal,
+            None,
+            |_, truth, normals, completed| {
+                assert_eq!(completed, Completed { estimated: 0, reversed: 3000 });
+                assert!(truth.iter().zip(normals).all(|(t, n)| t == n));
+            },
+        );
+    }
+
+    #[test]
+    fn given_normals_of_random_sign_are_turned_outwards() {
+        let sign = |i: usize| if i.wrapping_mul(2_654_435_761) & 64 == 0 { 1.0 } else { -1.0 };
+        with_completed(
+            |i, normal| normal * sign(i),
+            None,
+            |_, truth, normals, completed| {
+                let wrong = (0..3000).filter(|&i| sign(i) < 0.0).count();
+                assert!(wrong > 1000 && completed == Completed { estimated: 0, reversed: wrong });
+                assert!(truth.iter().zip(normals).all(|(t, n)| t == n));
+            },
+        );
+    }
+
+    #[test]
+    fn given_normals_that_are_right_stay() {
+        with_completed(
+            |_, normal| normal,
+            None,
+            |_, truth, normals, completed| {
+                assert_eq!(completed, Completed::default());
+                assert!(truth.iter().zip(normals).all(|(t, n)| t == n));
+            },
+        );
     }
 
     #[test]

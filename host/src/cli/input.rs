@@ -5,7 +5,7 @@ use super::{Axis, CloudArguments};
 use anyhow::{Context, Result};
 use hangpose::files::{CloudFile, MeshFile, SupporterFile};
 use hangpose::geometry::{Aabb, Cloud};
-use hangpose::hanging::Supporter;
+use hangpose::hanging::{NormalCounts, Supporter};
 use hangpose::{TooLarge, sample_supporter};
 use std::path::Path;
 
@@ -78,7 +78,8 @@ pub(super) fn seen<'a>(file: &'a CloudFile, arguments: &CloudArguments) -> Resul
 
 /// Prints notes about the normals of a cloud. The reader has already reported those that were not of unit length.
 pub(super) fn tell_of_normals(path: &Path, supporter: &Supporter, arguments: &CloudArguments) {
-    let (estimated, points) = (supporter.normals().estimated, supporter.points().points().len());
+    let NormalCounts { estimated, reversed, .. } = supporter.normals();
+    let points = supporter.points().points().len();
     let is_seen = arguments.viewpoint.is_some();
     let side = match (estimated == points, is_seen) {
         (true, true) => "and face the viewpoint",
@@ -94,7 +95,22 @@ pub(super) fn tell_of_normals(path: &Path, supporter: &Supporter, arguments: &Cl
             ),
         );
     }
-    if is_seen && estimated < points {
+    if reversed == points {
+        let note = "the normals pointed into the solid, so all were reversed";
+        say("note", format_args!("{}: {note}", path.display()));
+    } else if reversed > 0 {
+        let side = match is_seen {
+            true => "to face the viewpoint",
+            false => "by the shape of the cloud: pass --viewpoint if the camera position is known",
+        };
+        say(
+            "note",
+            format_args!(
+                "{}: the signs of the normals did not agree, so {reversed} of {points} were reversed {side}",
+                path.display()
+            ),
+        );
+    } else if is_seen && estimated < points {
         say("note", format_args!("{}: has normals, so --viewpoint has no effect", path.display()));
     }
 }

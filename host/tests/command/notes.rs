@@ -50,6 +50,32 @@ fn missing_normals_are_estimated() {
 }
 
 #[test]
+fn normals_that_point_inwards_or_at_random_are_reversed() {
+    let scene = Scene::new();
+    let hangs = |cloud: &Path| {
+        let run = run!("predict", "--object", scene.ring, "--supporter", cloud, "--json", "-");
+        assert_eq!(run.status, Some(0), "{}", run.stderr);
+        // The ring's wire of 4 mm lies on the peg of 4 mm radius: its centre is as far below as its inner radius allows.
+        let z = run.json()["poses"][0]["rest_pose"][11].as_f64().unwrap();
+        assert!((z + shapes::RING_RADIUS - shapes::WIRE_RADIUS - shapes::PEG_RADIUS).abs() < 0.002, "{z}");
+        run.stderr
+    };
+    let reverse = |points: &mut [[f64; 6]], every: usize| {
+        points.iter_mut().step_by(every).for_each(|p| p[3..].iter_mut().for_each(|x| *x = -*x));
+    };
+    let mut points = shapes::peg();
+    reverse(&mut points, 1);
+    let text = hangs(&scene.write("inward.xyz", shapes::xyz(&points)));
+    assert!(text.contains("pointed into the solid, so all were reversed"), "{text}");
+
+    let mut points = shapes::peg();
+    reverse(&mut points, 2);
+    let text = hangs(&scene.write("random.xyz", shapes::xyz(&points)));
+    let part = format!("so {} of {} were reversed by the shape", points.len().div_ceil(2), points.len());
+    assert!(text.contains(&part), "{part} in {text}");
+}
+
+#[test]
 fn zero_and_long_normals_are_mended() {
     let scene = Scene::new();
     let mut points = shapes::peg();

@@ -1,0 +1,231 @@
+//! Which side of a surface is outside: turns the normals of a cloud so that they agree with each other and point out of the solid.
+
+use crate::geometry::{Neighbour, Point, PointTree, Vector};
+use crate::heap::Heap;
+use crate::memory::{Arena, OutOfMemory, array_bytes};
+use bytemuck::{Pod, Zeroable};
+
+// Tolerances, set by hand on the shapes of the tests below; no value was fitted.
+
+/// Share of neighbouring normals that must agree in sign for the normals to count as oriented. Normals of one surface agree everywhere but
+/// at noise and sharp edges; without orientation half of them do.
+const MIN_AGREEMENT: f32 = 0.8;
+/// Share of the opposing points that must lie in front of the normals for these to count as pointing inwards.
+const MIN_INWARD: f32 = 0.8;
+/// Largest thickness at which the two sides of a bar or plate are told apart, metres: thicker than what things hang on.
+const MAX_THICKNESS: f32 = 0.025;
+/// Cosine between opposing normals, and between a normal and the way to the opposing point.
+const OPPOSING: f32 = 0.7;
+/// Opposing pairs below which the pairs decide nothing.
+const MIN_PAIRS: f32 = 8.0;
+
+/// Cosine of the bend between neighbours up to which they are in one piece: 53 degrees.
+const SMOOTH: f32 = 0.6;
+/// Share of the bending that must be convex, or concave, in excess of the other for the curvature to decide.
+const MIN_BIAS: f32 = 0.3;
+
+// Budget.
+
+/// Neighbours to which orientation is propagated from a point.
+const NEIGHBOURS: usize = 16;
+/// Points that vote on the side of a cloud.
+const VOTERS: usize = 1024;
+/// Nearest points with which a voter's normal is compared, itself included: a ring around it, not only its row in a regular grid.
+const COMPARED: usize = 9;
+
+/// Bytes of working memory for [`orient`] on a cloud of `points`.
+pub(crate) const fn scratch_bytes(points: usize) -> usize {
+    array_bytes::<u32>(points).saturating_mul(7).saturating_add(array_bytes::<Votes>(points))
+}
+
+/// The state of normals that a caller gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Given {
+    /// They agree with each other and do not point into the solid.
+    Outwards,
+    /// They agree with each other and point into the solid.
+    Inwards,
+    /// Their signs do not agree with each other.
+    Unoriented,
+}
+
+/// Judges given normals, all known and in tree order.
+pub(crate) fn judge(tree: &PointTree, normals: &[Vector]) -> Given {
+    let (mut agree, mut compared) = (0.0, 0.0);
+    let (mut pairs, mut inward) = (0.0, 0.0);
+    for index in voters(normals.len()) {
+        let point = &tree.points()[index];
+        let mut found = [Neighbour::default(); COMPARED];
+        for neighbour in tree.k_nearest(point, &mut found).iter().filter(|n| n.distance_squared > 0.0) {
+            let other = neighbour.index as usize;
+            let agreement = transported(tree, normals, index, other).dot(&normals[other]);
+            compared += agreement.abs();
+            agree += agreement.max(0.0);
+        }
+        if let Some(side) = opposing_side(tree, normals, index) {
+            pairs += 1.0;
+            inward += f32::from(u8::from(side > 0.0));
+        }
+    }
+    if agree < MIN_AGREEMENT * compared {
+        Given::Unoriented
+    } else if pairs >= MIN_PAIRS && inward >= MIN_INWARD * pairs {
+        Given::Inwards
+    } else {
+        Given::Outwards
+    }
+}
+
+/// Gives normals of arbitrary sign, in tree order, the side that is outside.
+///
+/// Signs are propagated from neighbour to neighbour across the least bends first (Hoppe et al. 1992, "Surface Reconstruction from
+/// Unorganized Points"), along circular arcs (König and Gumhold 2009, "Consistent Propagation of Normal Orientations in Point Clouds").
+/// Sharp bends cut the cloud into pieces, because the side beyond one, as where a bar meets a plate, is not certain. Each piece then
+/// takes the side that its opposing points say, or else its curvature, because what things hang on is mostly convex. A piece for which
+/// neither decides keeps its side against the piece that it was reached from, and the first of all faces `up` at its top.
+pub(crate) fn orient(
+    tree: &PointTree,
+    normals: &mut [Vector],
+    up: Vector,
+    mut scratch: Arena,
+) -> Result<(), OutOfMemory> {
+    let points = tree.points();
+    let from_top = scratch.slice::<u32>(points.len())?;
+    let parents = scratch.slice::<u32>(points.len())?;
+    // For each point the piece that it is in, which is a place in the next two.
+    let piece_of = scratch.slice::<u32>(points.len())?;
+    let reached_from = scratch.slice::<u32>(points.len())?;
+    let votes = scratch.slice::<Votes>(points.len())?;
+    let mut pieces = 0;
+    let weights = scratch.slice::<f32>(points.len())?;
+    let (order, places) = (scratch.slice::<u32>(points.len())?, scratch.slice::<u32>(points.len())?);
+    for (slot, index) in from_top.iter_mut().zip(0..) {
+        *slot = index;
+    }
+    let height = |&index: &u32| points[index as usize].coords.dot(&up);
+    from_top.sort_unstable_by(|a, b| height(b).total_cmp(&height(a)).then(a.cmp(b)));
+    const WAITING: u32 = u32::MAX;
+    const DONE: u32 = u32::MAX - 1;
+    parents.fill(WAITING);
+    let mut heap = Heap::empty(weights, order, places);
+    for &top in from_top.iter() {
+        if parents[top as usize] == DONE {
+            continue;
+        }
+        heap.offer(top as usize, 0.0);
+        while let Some(index) = heap.pop() {
+            let parent = parents[index];
+            let like = match parent {
+                WAITING => up,
+                parent => transported(tree, normals, parent as usize, index),
+            };
+            if normals[index].dot(&like) < 0.0 {
+                normals[index] = -normals[index];
+            }
+            parents[index] = DONE;
+            let is_smooth = parent != WAITING && normals[index].dot(&normals[parent as usize]) > SMOOTH;
+            piece_of[index] = if is_smooth { piece_of[parent as usize] } else { pieces };
+            if !is_smooth {
+                reached_from[pieces as usize] =
+                    if parent == WAITING { NONE } else { piece_of[parent as usize] };
+                pieces += 1;
+            }
+            let mut found = [Neighbour::default(); NEIGHBOURS];
+            for neighbour in tree.k_nearest(&points[index], &mut found) {
+                let other = neighbour.index as usize;
+                let agreement = transported(tree, normals, index, other).dot(&normals[other]).abs();
+                if parents[other] != DONE && heap.offer(other, agreement) {
+                    parents[other] = index as u32;
+                }
+            }
+        }
+    }
+    for index in voters(points.len()) {
+        let votes = &mut votes[piece_of[index] as usize];
+        votes.pairs -= opposing_side(tree, normals, index).unwrap_or(0.0);
+        let curvature = mean_curvature(tree, normals, index);
+        (votes.curvature, votes.bending) = (votes.curvature + curvature, votes.bending + curvature.abs());
+    }
+    // A piece comes after the one that it was reached from.
+    for piece in 0..pieces as usize {
+        let inherited = match reached_from[piece] {
+            NONE => 1.0,
+            from => votes[from as usize].sign,
+        };
+        votes[piece].sign = votes[piece].decide().unwrap_or(inherited);
+    }
+    for (normal, &piece) in normals.iter_mut().zip(piece_of.iter()) {
+        *normal *= votes[piece as usize].sign;
+    }
+    Ok(())
+}
+
+/// No piece.
+const NONE: u32 = u32::MAX;
+
+/// What the points of a piece say about its side.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Votes {
+    /// Opposing points behind the normals, less those in front of them.
+    pairs: f32,
+    /// Sum of the mean curvatures, and of their absolute values.
+    curvature: f32,
+    bending: f32,
+    /// -1 if the normals are to be reversed, else 1.
+    sign: f32,
+}
+
+impl Votes {
+    /// The sign, if the votes are clear.
+    fn decide(&self) -> Option<f32> {
+        if self.pairs.abs() >= MIN_PAIRS {
+            Some(self.pairs.signum())
+        } else if self.curvature.abs() > MIN_BIAS * self.bending {
+            Some(self.curvature.signum())
+        } else {
+            None
+        }
+    }
+}
+
+/// Indices of up to [`VOTERS`] points, spread over the cloud.
+fn voters(points: usize) -> impl Iterator<Item = usize> {
+    let count = points.min(VOTERS);
+    (0..count).map(move |voter| voter * points / count)
+}
+
+/// The normal of one point carried along a circular arc to another: reflected at the plane half-way between them.
+fn transported(tree: &PointTree, normals: &[Vector], from: usize, to: usize) -> Vector {
+    let (normal, way) = (normals[from], tree.points()[to] - tree.points()[from]);
+    let length_squared = way.norm_squared();
+    if length_squared > 0.0 { normal - way * (2.0 * normal.dot(&way) / length_squared) } else { normal }
+}
+
+/// On which side of a point's normal the nearest point of the opposite surface lies: -1 behind it, as through a solid, 1 in front of it,
+/// `None` if there is none.
+fn opposing_side(tree: &PointTree, normals: &[Vector], index: usize) -> Option<f32> {
+    let (point, normal) = (tree.points()[index], normals[index]);
+    let mut nearest: Option<(f32, f32)> = None;
+    tree.for_each_within(&point, MAX_THICKNESS, |neighbour| {
+        let other = neighbour.index as usize;
+        if normals[other].dot(&normal) > -OPPOSING
+            || nearest.is_some_and(|n| n.0 <= neighbour.distance_squared)
+        {
+            return;
+        }
+        let along = (tree.points()[other] - point).dot(&normal);
+        if along * along > OPPOSING * OPPOSING * neighbour.distance_squared {
+            nearest = Some((neighbour.distance_squared, along.signum()));
+        }
+    });
+    nearest.map(|(_, side)| side)
+}
+
+/// A point's share of the total mean curvature, positive where the surface is convex seen from the side of the normals.
+fn mean_curvature(tree: &PointTree, normals: &[Vector], index: usize) -> f32 {
+    let point: Point = tree.points()[index];
+    let mut found = [Neighbour::default(); NEIGHBOURS];
+    let turn = |other: usize| (normals[other] - normals[index]).dot(&(tree.points()[other] - point));
+    tree.k_nearest(&point, &mut found).iter().map(|neighbour| turn(neighbour.index as usize)).sum()
+}
