@@ -29,7 +29,7 @@ const MIN_BIAS: f32 = 0.3;
 /// Neighbours to which orientation is propagated from a point.
 const NEIGHBOURS: usize = 16;
 /// Points that vote on the side of a cloud.
-const VOTERS: usize = 1024;
+const VOTERS: usize = 256;
 /// Nearest points with which a voter's normal is compared, itself included: a ring around it, not only its row in a regular grid.
 const COMPARED: usize = 9;
 
@@ -206,20 +206,20 @@ fn transported(tree: &PointTree, normals: &[Vector], from: usize, to: usize) -> 
 /// `None` if there is none.
 fn opposing_side(tree: &PointTree, normals: &[Vector], index: usize) -> Option<f32> {
     let (point, normal) = (tree.points()[index], normals[index]);
-    let mut nearest: Option<(f32, f32)> = None;
-    tree.for_each_within(&point, MAX_THICKNESS, |neighbour| {
-        let other = neighbour.index as usize;
-        if normals[other].dot(&normal) > -OPPOSING
-            || nearest.is_some_and(|n| n.0 <= neighbour.distance_squared)
-        {
-            return;
+    let mut side = None;
+    tree.bvh().visit_near(&point, MAX_THICKNESS * MAX_THICKNESS, |items, mut limit| {
+        for other in items {
+            let way = tree.points()[other] - point;
+            let (distance_squared, along) = (way.norm_squared(), way.dot(&normal));
+            let is_opposing = normals[other].dot(&normal) < -OPPOSING
+                && along * along > OPPOSING * OPPOSING * distance_squared;
+            if is_opposing && distance_squared < limit {
+                (limit, side) = (distance_squared, Some(along.signum()));
+            }
         }
-        let along = (tree.points()[other] - point).dot(&normal);
-        if along * along > OPPOSING * OPPOSING * neighbour.distance_squared {
-            nearest = Some((neighbour.distance_squared, along.signum()));
-        }
+        limit
     });
-    nearest.map(|(_, side)| side)
+    side
 }
 
 /// A point's share of the total mean curvature, positive where the surface is convex seen from the side of the normals.
