@@ -92,6 +92,14 @@ pub struct Params {
     pub friction: f32,
     /// How far off the supporter the object is let go, metres, where there is room for that.
     pub clearance: f32,
+    /// Time step of the simulation, s. A larger step is faster and less exact: contacts are sought from farther away (1.4 mm at 0.005 s),
+    /// where the distance field is no longer exact. A smaller step costs time in proportion. The probability was fitted at the default.
+    pub time_step: f32,
+    /// Time within which a released object must come to rest or fall, s; after it the object counts as still moving.
+    /// [`let_go`](crate::hanging::let_go) follows the object for four seconds instead.
+    pub settle_time: f32,
+    /// Speed below which a touching object is at rest, m/s: that of its fastest point, averaged over 80 ms.
+    pub rest_speed: f32,
     /// Nodes of the object's signed distance field at most: two bytes each, and as much again for where they are.
     pub voxels: usize,
     /// Poses that are let go at most while none stays; once one does, no more than a quarter of that in all.
@@ -135,6 +143,9 @@ impl Params {
             settle: false,
             friction: 0.4,
             clearance: 0.001,
+            time_step: 0.004,
+            settle_time: 3.0,
+            rest_speed: 0.005,
             voxels: 0,
             settle_attempts: 0,
             firm_enough: 0,
@@ -146,7 +157,7 @@ impl Params {
     pub fn validate(&self) -> Result<(), ParamsError> {
         // Counts are bounded so that working memory and index types stay small; cosines may be anything that
         // still selects.
-        let ranges: [(&'static str, f32, f32, f32); 27] = [
+        let ranges: [(&'static str, f32, f32, f32); 30] = [
             ("samples", self.samples as f32, 100.0, MAX_SAMPLES as f32),
             ("object_contact_cosine", self.object_contact_cosine, 0.0, 1.0),
             ("cluster_bandwidth", self.cluster_bandwidth, 0.001, 1.0),
@@ -170,6 +181,9 @@ impl Params {
             ("contact_area_weight", self.contact_area_weight, 0.0, 1.0),
             ("friction", self.friction, 0.0, 2.0),
             ("clearance", self.clearance, 0.0, 0.01),
+            ("time_step", self.time_step, 0.0005, 0.005),
+            ("settle_time", self.settle_time, 0.1, 60.0),
+            ("rest_speed", self.rest_speed, 0.0001, 0.1),
             ("voxels", self.voxels as f32, 0.0, MAX_VOXELS as f32),
             ("settle_attempts", self.settle_attempts as f32, 0.0, 10_000.0),
             ("firm_enough", self.firm_enough as f32, 0.0, 10_000.0),
@@ -300,6 +314,9 @@ mod tests {
             Params { similar_radius: f32::NAN, ..Params::paper() },
             Params { samples: 0, ..Params::paper() },
             Params { samples: usize::MAX, ..Params::paper() },
+            Params { time_step: 0.01, ..Params::paper() },
+            Params { settle_time: 0.0, ..Params::paper() },
+            Params { rest_speed: 0.0, ..Params::paper() },
             Params { gravity: [0.0; 3], ..Params::paper() },
             Params { gravity: [f32::MAX; 3], ..Params::paper() },
             Params { centre_of_mass: CentreOfMass::Given([0.0, f32::NAN, 0.0]), ..Params::paper() },

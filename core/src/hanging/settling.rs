@@ -154,15 +154,15 @@ impl Settling<'_> {
         let Some((Release { pose, gap, sinking }, settled)) = self.find_release(settled, meter)? else {
             return Ok(false);
         };
-        let (down, friction) = (-self.params.up(), self.params.friction);
-        if !comes_free(scene, &settled.pose, &down, Settings::damped(friction), self.sleeps, meter)? {
+        let (down, params) = (-self.params.up(), self.params);
+        if !comes_free(scene, &settled.pose, &down, Settings::damped(params), self.sleeps, meter)? {
             self.counts.wedged += 1;
             return Ok(false);
         }
         // What cannot become better than the last of a full list need not be looked at to the end.
         let last = poses.next_to_go().and_then(|pose| pose.rest).map_or(0.0, |rest| rest.probability);
         let least = probability::least_tilt(last, gap).max(WORTHLESS_TILT);
-        let firm = firmness(scene, &settled.pose, &down, friction, least, self.sleeps, meter)?;
+        let firm = firmness(scene, &settled.pose, &down, params, least, self.sleeps, meter)?;
         let rest = Rest::new(settled.pose, sinking, gap, &firm);
         if rest.probability >= self.params.min_probability && self.known(&rest.pose, poses).is_none() {
             self.counts.probable += 1;
@@ -178,7 +178,7 @@ impl Settling<'_> {
     }
 
     fn settle(&mut self, start: &Pose, meter: &mut Meter) -> Result<Settled, Stop> {
-        let settings = Settings::damped(self.params.friction);
+        let settings = Settings::damped(self.params);
         settle((self.body, self.support), start, &-self.params.up(), settings, self.sleeps, meter)
     }
 

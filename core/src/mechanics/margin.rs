@@ -1,11 +1,12 @@
 //! How firmly a resting object stays.
 
-use super::motion::{Motion, Settings, TIME_STEP};
+use super::motion::{Motion, Settings};
 use super::neighbourhood::Sleep;
 use super::settle::most_sinking;
 use super::{Body, GRAVITY, Support};
 use crate::geometry::{Point, Pose, Vector, rotate_about};
 use crate::monitor::{Meter, Stop};
+use crate::params::Params;
 
 /// Directions in which gravity is tilted.
 pub const DIRECTIONS: usize = 8;
@@ -88,7 +89,7 @@ const SLIPPERY: f32 = 0.7;
 /// Up to this tilt, radians, what hangs well does not sink: beyond, what lies in a hook rolls out of it.
 const SINKING_TILT: f32 = 0.9;
 /// Without contact for so long, seconds, it has left.
-const GONE: f32 = 0.1;
+pub(super) const GONE: f32 = 0.1;
 
 /// Tilts gravity in every direction from `rest`. `least` is the tilt, radians, below which the rest of the directions do not matter
 /// any more: those that are not tried have a tilt of zero.
@@ -96,13 +97,13 @@ pub(crate) fn firmness(
     scene: (&Body, &Support),
     rest: &Pose,
     down: &Vector,
-    friction: f32,
+    params: &Params,
     least: f32,
     sleeps: &mut [Sleep],
     meter: &mut Meter,
 ) -> Result<Firmness, Stop> {
     let body = scene.0;
-    let settings = Settings::damped(friction);
+    let settings = Settings::damped(params);
     let start = body.at(rest);
     let contacts = {
         let mut motion = Motion::new(scene, start, settings, sleeps);
@@ -123,7 +124,7 @@ pub(crate) fn firmness(
     }
     let lever = if weight > 0.0 { (start.centre.coords - place / weight).norm() } else { 0.0 };
 
-    let tilting = Settings::damped(SLIPPERY * friction);
+    let tilting = Settings { friction: SLIPPERY * params.friction, ..settings };
     let mut margin = Margin::default();
     let (mut escape, mut highest) = (f32::INFINITY, 0.0_f32);
     let (mut weakest, mut is_hopeless) = (0, false);
@@ -146,7 +147,7 @@ pub(crate) fn firmness(
         }
     }
     if !is_hopeless {
-        let motion = Motion::new(scene, start, Settings::undamped(friction), sleeps);
+        let motion = Motion::new(scene, start, Settings::undamped(params), sleeps);
         margin.jolt_time = jolt_until_it_leaves(motion, body, down, &towards(weakest, down), meter)?;
     }
     margin.escape_rise = if escape.is_finite() { escape } else { highest };
@@ -181,7 +182,7 @@ impl Watch {
         self.loose = if motion.touches { 0 } else { self.loose + 1 };
         // The swing into the new direction is not a fall.
         let swing = body.reach * (1.0 - cos);
-        let gone = (GONE / TIME_STEP) as usize;
+        let gone = motion.settings.steps(GONE);
         (moved, self.loose > gone || pull.dot(&moved) > most_sinking(body) + swing)
     }
 }
@@ -207,10 +208,11 @@ fn tilt_until_it_leaves(
     meter: &mut Meter,
 ) -> Result<Tilted, Stop> {
     let mut watch = Watch::new(&motion);
-    let steps = (Margin::MOST_TILT / (RATE * TIME_STEP)) as usize;
+    let Settings { time_step, .. } = motion.settings;
+    let steps = motion.settings.steps(Margin::MOST_TILT / RATE);
     let mut tilted = Tilted::default();
     for step in 1..=steps {
-        let angle = RATE * TIME_STEP * step as f32;
+        let angle = RATE * time_step * step as f32;
         let (sin, cos) = libm::sincosf(angle);
         let pull = down * cos + across * sin;
         motion.step(&(pull * GRAVITY), meter)?;
@@ -242,12 +244,14 @@ fn jolt_until_it_leaves(
     let mut watch = Watch::new(&motion);
     let (sin, cos) = libm::sincosf(Margin::JOLT);
     let pull = down * cos + across * sin;
-    let steps = (Margin::MOST_JOLT_TIME / TIME_STEP) as usize;
+    let Settings { time_step, .. } = motion.settings;
+    // One step less, so that every measured time is below `MOST_JOLT_TIME`, which is reserved for a body that stays.
+    let steps = motion.settings.steps(Margin::MOST_JOLT_TIME) - 1;
     let mut held = 0.0;
     for step in 1..=steps {
         motion.step(&(pull * GRAVITY), meter)?;
         if motion.touches {
-            held = TIME_STEP * step as f32;
+            held = time_step * step as f32;
         }
         if watch.look(&motion, body, &pull, cos).1 {
             return Ok(held);

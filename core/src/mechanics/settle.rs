@@ -5,6 +5,7 @@ use super::neighbourhood::Sleep;
 use super::{Body, GRAVITY, Support};
 use crate::geometry::{Pose, Vector};
 use crate::monitor::{Meter, Stop};
+use crate::params::Params;
 
 /// How it ends when an object is let go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,12 +33,8 @@ pub(super) fn most_sinking(body: &Body) -> f32 {
     0.06_f32.max(0.5 * body.extent)
 }
 
-/// Steps until it must rest: three seconds.
-const STEPS: usize = 750;
-/// It rests when over so many steps
-const WINDOW: usize = 20;
-/// no point of it moves farther than this, metres.
-const STILL: f32 = 0.0004;
+/// Interval over which the speed of a body is averaged to tell whether it rests, s.
+pub(super) const REST_WINDOW: f32 = 0.08;
 /// What falls and has turned by more than this, radians, rotated off.
 const TURNED: f32 = 0.7;
 
@@ -51,12 +48,13 @@ pub(crate) fn settle(
     meter: &mut Meter,
 ) -> Result<Settled, Stop> {
     let mut motion = Motion::new((body, support), body.at(release), settings, sleeps);
-    let fate = follow(&mut motion, body, down, STEPS, meter)?.unwrap_or(Fate::Moves);
+    let steps = settings.steps(settings.settle_time);
+    let fate = follow(&mut motion, body, down, steps, meter)?.unwrap_or(Fate::Moves);
     Ok(Settled { fate, pose: body.pose(&motion.state) })
 }
 
-/// So many steps a body may swing: four seconds.
-const SWINGING_STEPS: usize = 1000;
+/// Duration for which [`swing_out`] follows the body, s.
+pub(super) const SWING_TIME: f32 = 4.0;
 /// Slower than this, metres per second of its centre of mass, it hangs then.
 const SLOW: f32 = 0.05;
 
@@ -65,13 +63,13 @@ pub(crate) fn swing_out(
     (body, support): (&Body, &Support),
     release: &Pose,
     down: &Vector,
-    friction: f32,
+    params: &Params,
     sleeps: &mut [Sleep],
     meter: &mut Meter,
 ) -> Result<Settled, Stop> {
-    let settings = Settings::swinging(friction);
+    let settings = Settings::swinging(params);
     let mut motion = Motion::new((body, support), body.at(release), settings, sleeps);
-    let fate = follow(&mut motion, body, down, SWINGING_STEPS, meter)?;
+    let fate = follow(&mut motion, body, down, settings.steps(SWING_TIME), meter)?;
     let hangs = motion.touches && motion.state.velocity.norm() < SLOW;
     let fate = fate.unwrap_or(if hangs { Fate::Rests } else { Fate::Moves });
     Ok(Settled { fate, pose: body.pose(&motion.state) })
@@ -85,6 +83,8 @@ fn follow(
     steps: usize,
     meter: &mut Meter,
 ) -> Result<Option<Fate>, Stop> {
+    let Settings { rest_speed, .. } = motion.settings;
+    let window = motion.settings.steps(REST_WINDOW);
     let start = motion.state;
     let mut mark = start;
     for step in 1..=steps {
@@ -94,8 +94,8 @@ fn follow(
             let turned = start.rotation.angle_to(&state.rotation);
             return Ok(Some(if turned > TURNED { Fate::RotatesOff } else { Fate::SlidesOff }));
         }
-        if step % WINDOW == 0 {
-            if motion.touches && body.travel(&mark, state) < STILL {
+        if step % window == 0 {
+            if motion.touches && body.travel(&mark, state) < rest_speed * REST_WINDOW {
                 return Ok(Some(Fate::Rests));
             }
             mark = *state;
@@ -106,8 +106,8 @@ fn follow(
 
 /// It comes free when nothing bears on it any more and it has moved this far, metres,
 const FREE: f32 = 0.002;
-/// within so many steps: half a second.
-const FREEING_STEPS: usize = 125;
+/// within this time, s.
+pub(super) const FREEING_TIME: f32 = 0.5;
 
 /// Whether the body comes off when gravity is reversed: what does not is wedged, or was pushed onto the supporter.
 pub(crate) fn comes_free(
@@ -120,7 +120,7 @@ pub(crate) fn comes_free(
 ) -> Result<bool, Stop> {
     let start = body.at(rest);
     let mut motion = Motion::new((body, support), start, settings, sleeps);
-    for _ in 0..FREEING_STEPS {
+    for _ in 0..settings.steps(FREEING_TIME) {
         motion.step(&(-down * GRAVITY), meter)?;
         if !motion.touches && (motion.state.centre - start.centre).norm() > FREE {
             return Ok(true);

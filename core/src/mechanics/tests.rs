@@ -2,13 +2,14 @@
 
 use super::body::State;
 use super::contact::{Contact, Contacts};
-use super::motion::{Motion, TIME_STEP};
+use super::motion::Motion;
 use super::neighbourhood::Neighbourhood;
 use super::patch::Patch;
 use super::*;
 use crate::geometry::{DistanceField, MassProperties, Point, PointTree, Pose, Surface, Vector};
 use crate::memory::{Arena, model_bytes};
 use crate::monitor::{Meter, Monitor};
+use crate::params::Params;
 use crate::random::Random;
 use crate::test_shapes::{self, Shape};
 use nalgebra::{Translation3, UnitQuaternion};
@@ -77,6 +78,10 @@ impl Scene {
 const DOWN: Vector = Vector::new(0.0, 0.0, -1.0);
 const FRICTION: f32 = 0.4;
 
+fn with_friction(friction: f32) -> Params {
+    Params { friction, ..Params::default() }
+}
+
 /// Down, turned by an angle towards a horizontal direction.
 fn tilted(degrees: f32, towards: Vector) -> Vector {
     let (sin, cos) = degrees.to_radians().sin_cos();
@@ -84,11 +89,16 @@ fn tilted(degrees: f32, towards: Vector) -> Vector {
 }
 
 impl Lab<'_> {
-    /// Lets the body go at `pose`.
+    /// Releases the body at `pose`.
     fn settle(&mut self, pose: &Pose, friction: f32) -> (Fate, Pose) {
+        self.settle_with(pose, &DOWN, &with_friction(friction))
+    }
+
+    /// Releases the body at `pose` with gravity along `down`.
+    fn settle_with(&mut self, pose: &Pose, down: &Vector, params: &Params) -> (Fate, Pose) {
         let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
-        let (settings, mut meter) = (Settings::damped(friction), Meter::new(&monitor));
-        let settled = settle(scene, pose, &DOWN, settings, &mut self.sleeps, &mut meter).unwrap();
+        let (settings, mut meter) = (Settings::damped(params), Meter::new(&monitor));
+        let settled = settle(scene, pose, down, settings, &mut self.sleeps, &mut meter).unwrap();
         (settled.fate, settled.pose)
     }
 
@@ -111,7 +121,7 @@ impl Lab<'_> {
         let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
         let mut meter = Meter::new(&monitor);
         let mut motion = Motion::new(scene, self.body.at(pose), settings, &mut self.sleeps);
-        for _ in 0..(seconds / TIME_STEP) as usize {
+        for _ in 0..settings.steps(seconds) {
             motion.step(&(down * GRAVITY), &mut meter).unwrap();
             see(&self.body, &motion.state);
         }
@@ -120,13 +130,14 @@ impl Lab<'_> {
 
     /// How far its centre of mass gets in half a second of gravity along `down`.
     fn drift(&mut self, pose: &Pose, down: &Vector, friction: f32) -> Vector {
-        let end = self.watch((pose, down), Settings::damped(friction), 0.5, |_, _| {});
+        let end = self.watch((pose, down), Settings::damped(&with_friction(friction)), 0.5, |_, _| {});
         end.centre - pose * self.body.centre
     }
 
     fn firmness(&mut self, rest: &Pose) -> margin::Firmness {
         let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
-        firmness(scene, rest, &DOWN, FRICTION, 0.0, &mut self.sleeps, &mut Meter::new(&monitor)).unwrap()
+        firmness(scene, rest, &DOWN, &Params::default(), 0.0, &mut self.sleeps, &mut Meter::new(&monitor))
+            .unwrap()
     }
 
     fn is_clear(&self, pose: &Pose, clearance: f32) -> bool {
@@ -593,7 +604,7 @@ fn a_wedge_stays_point_down_and_slips_out_point_up() {
 
 #[test]
 fn energy_never_grows() {
-    let no_drag = |friction| Settings { friction, drag: 0.0, spin_drag: 0.0 };
+    let no_drag = |friction| Settings::undamped(&with_friction(friction));
     let ring = || Scene::new(ring(), rod(Vector::x(), 0.1, 0.005));
     let plate = test_shapes::prism(0.04, &[[-0.02, -0.005], [0.02, -0.005], [0.02, 0.005], [-0.02, 0.005]]);
     let plate = Scene::new(plate, plane(0.3, 0.1, |p| p));
@@ -752,5 +763,62 @@ fn a_release_is_off_by_the_clearance() {
         assert!(lab.is_clear(&pose, 0.0008) && !lab.is_clear(&rest, 0.0008));
         let lift = (pose * lab.body.centre - rest * lab.body.centre).dot(&-DOWN);
         assert!((0.0005..0.003).contains(&lift), "{lift}");
+    });
+}
+
+#[test]
+fn the_default_durations_are_these_numbers_of_steps() {
+    let settings = Settings::damped(&Params::default());
+    let steps =
+        [settings.settle_time, settle::SWING_TIME, settle::REST_WINDOW, settle::FREEING_TIME, margin::GONE];
+    assert_eq!(steps.map(|seconds| settings.steps(seconds)), [750, 1000, 20, 125, 25]);
+    assert_eq!(settings.rest_speed * settle::REST_WINDOW, 0.0004);
+}
+
+#[test]
+fn half_the_time_step_gives_the_same_rest() {
+    Scene::new(ring(), rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
+        let release = at(0.01, 0.004, 0.0) * on_rod();
+        let [whole, half] = [0.004, 0.002].map(|time_step| {
+            let params = Params { time_step, ..Params::default() };
+            let (fate, pose) = lab.settle_with(&release, &DOWN, &params);
+            assert_eq!(fate, Fate::Rests, "{time_step}: {pose}");
+            pose
+        });
+        let off = (whole * lab.body.centre - half * lab.body.centre).norm();
+        assert!(off < 0.001, "{off}");
+        let turned = whole.rotation.angle_to(&half.rotation).to_degrees();
+        assert!(turned < 2.0, "{turned}");
+    });
+}
+
+#[test]
+fn a_body_that_settles_slowly_moves_until_the_settle_time_is_over() {
+    Scene::new(weighted_ring(), rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
+        // Its weight swings down from a right angle.
+        let turn = turned(Vector::x(), 90.0) * turned(Vector::y(), -90.0);
+        let release = Pose::from_parts(Translation3::new(0.0, 0.0, -hang(0.005) + 0.0005), turn);
+        for (settle_time, fate) in [(0.3, Fate::Moves), (3.0, Fate::Rests)] {
+            let params = Params { settle_time, ..Params::default() };
+            assert_eq!(lab.settle_with(&release, &DOWN, &params).0, fate, "{settle_time}");
+        }
+    });
+}
+
+#[test]
+fn what_is_slower_than_the_rest_speed_rests() {
+    // Without friction the ring slides along the rod, against the drag of 2/s at g sin(slope) / 2 in the end.
+    Scene::new(ring(), rod(Vector::x(), 0.5, 0.005)).try_out(|lab| {
+        for (speed, rest_speed, fate) in [
+            (0.04, 0.1, Fate::Rests),
+            (0.04, 0.005, Fate::Moves),
+            (0.003, 0.005, Fate::Rests),
+            (0.003, 0.0002, Fate::Moves),
+        ] {
+            let slope = (2.0 * speed / GRAVITY).asin().to_degrees();
+            let params = Params { rest_speed, ..with_friction(0.0) };
+            let (found, pose) = lab.settle_with(&on_rod(), &tilted(slope, Vector::x()), &params);
+            assert_eq!(found, fate, "{speed} m/s, rest below {rest_speed} m/s: {pose}");
+        }
     });
 }
