@@ -1,81 +1,88 @@
-//! Every constant of the method, by name.
+//! The parameters of the method.
 
 use crate::geometry::{Point, Vector};
 
-/// What the object's centre of mass is taken to be.
+/// Source of the object's centre of mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum CentreOfMass {
-    /// The mean of the surface samples: `h_c` of eq. (3).
+    /// Mean of the surface samples: `h_c` of eq. (3).
     SampleMean,
-    /// The centroid of the volume where the mesh is closed, the mean of the samples where it is not.
+    /// Centroid of the volume if the mesh is closed, mean of the samples if it is not.
     Volume,
-    /// Known to the caller; metres, in object coordinates.
+    /// Given by the caller, in object coordinates, metres.
     Given([f32; 3]),
 }
 
-/// Where the poses come from that are looked at.
+/// Source of the candidate poses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 pub enum Candidates {
-    /// Every hanging site on every support site, as the paper matches them: section II-D.
+    /// Every pair of a hanging site and a support site, matched as in the paper, section II-D.
     Sites,
-    /// Every place of the object that can lie on something on every place of the supporter that can carry something.
+    /// Every pair of a contact candidate of the object and one of the supporter that can carry it.
     Contacts,
 }
 
-/// The constants of the method, with the paper's symbols; values of Table I unless said otherwise.
+/// The parameters of the method, with the paper's symbols.
 ///
-/// Two profiles exist: [`Params::paper`] is the published method, [`Params::default`] is ours.
+/// There are two profiles. [`Params::paper`] is the published method, with the values of the paper's Table I
+/// unless a field says otherwise; [`Params::default`] is the method of this library. [`Params::validate`]
+/// checks the ranges.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields, default))]
 pub struct Params {
-    /// Seed of the surface samples.
+    /// Seed of the random surface samples.
     pub seed: u64,
-    /// Direction in which things fall, in supporter coordinates; any length but zero.
+    /// Direction of gravity in supporter coordinates; any length but zero.
     pub gravity: [f32; 3],
-    /// The centre of mass that the method works with.
+    /// Source of the centre of mass.
     pub centre_of_mass: CentreOfMass,
 
-    /// `N`: points sampled from the object's surface (paper: 10000, section II-B).
+    /// `N`: number of points sampled from the object's surface (paper: 10000, section II-B).
     pub samples: usize,
-    /// `alpha_h`: least cosine between an object point's normal and its direction to the centre of mass, eq. (3).
+    /// `alpha_h`: minimum cosine between an object point's normal and its direction to the centre of mass,
+    /// eq. (3).
     pub object_contact_cosine: f32,
-    /// Radius of the mean shift's flat kernel, as a fraction of the bounding box's diagonal (not in the paper).
+    /// Radius of the mean shift's flat kernel, as a fraction of the bounding box's diagonal (not in the
+    /// paper).
     pub cluster_bandwidth: f32,
-    /// `l_c`: object clusters of this many points or fewer are dropped, eq. (4).
+    /// `l_c`: largest number of points of an object cluster that is dropped, eq. (4).
     pub min_cluster_points: usize,
-    /// `N_h`: positions tried between a contact point and the surface opposite, for the free space.
+    /// `N_h`: number of positions between a contact point and the opposite surface that are tested for free
+    /// space.
     pub free_space_steps: usize,
-    /// `r_alpha`: least free-space radius, metres.
+    /// `r_alpha`: minimum free-space radius, metres.
     pub min_free_space_radius: f32,
-    /// `N_p`: hanging directions tried at an object site.
+    /// `N_p`: number of hanging directions tested at an object site.
     pub object_directions: usize,
-    /// `N_r`: rays cast around each of those directions.
+    /// `N_r`: number of rays cast around each hanging direction.
     pub rays_per_direction: usize,
-    /// `alpha_1`: least share of the rays above the hanging position that must hit the object, eq. (6).
+    /// `alpha_1`: minimum fraction of the rays above the hanging position that hit the object, eq. (6).
     pub min_encircled_above: f32,
-    /// `alpha_2`: the same for the rays below it.
+    /// `alpha_2`: minimum fraction of the rays below the hanging position that hit the object, eq. (6).
     pub min_encircled_below: f32,
-    /// `r_beta`: object sites whose free-space radii differ by less than this fraction may be merged, eq. (7).
+    /// `r_beta`: relative difference of the free-space radii below which object sites may be merged, eq. (7).
     pub similar_radius: f32,
-    /// `beta`: ... if the cosine between their hanging directions is above this, eq. (7).
+    /// `beta`: cosine between the hanging directions above which object sites may be merged, eq. (7).
     pub similar_direction: f32,
 
-    /// `alpha_s`: least cosine between a supporter point's normal and up, section II-C.
+    /// `alpha_s`: minimum cosine between a supporter point's normal and the upward direction, section II-C.
     pub supporter_contact_cosine: f32,
-    /// `M_s`: directions in which the supporter is sliced at each site.
+    /// `M_s`: number of directions in which the supporter is sliced at each site.
     pub supporter_directions: usize,
-    /// `d_l`: half the thickness of a slice, metres.
+    /// `d_l`: half thickness of a slice, metres.
     pub slice_half_thickness: f32,
-    /// Points of a slice closer than this, metres, belong together (single linkage; not in the paper: `3 d_l`).
+    /// Distance below which points of a slice are linked into one cluster, metres (single linkage, `3 d_l`;
+    /// not in the paper).
     pub slice_link_distance: f32,
 
-    /// `alpha_m`: pairs whose free-space radius is below this times the support radius are dropped.
+    /// `alpha_m`: ratio of the free-space radius to the support radius below which a pair of sites is
+    /// dropped.
     pub radius_ratio: f32,
-    /// Poses that put more than this fraction of the supporter's points inside the object are dropped
-    /// (the paper drops none: 1).
+    /// Fraction of the supporter's points inside the object above which a pose is dropped (the paper drops
+    /// none: 1).
     pub max_collision: f32,
     /// `gamma_1`: weight of the collision cost `S_c`, eq. (11).
     pub collision_weight: f32,
@@ -84,27 +91,45 @@ pub struct Params {
     /// `gamma_3`: weight of the contact-area cost `S_a`, eq. (11).
     pub contact_area_weight: f32,
 
-    /// Where poses come from. All above but the first four constants is for [`Candidates::Sites`].
+    /// Source of the candidate poses. With [`Candidates::Contacts`] only the first four parameters above have
+    /// an effect.
     pub candidates: Candidates,
-    /// Whether gravity acts before the answer is given: only what comes to rest is, and stays, is a pose.
+    /// Whether the candidate poses are simulated under gravity. If so, only those that come to rest and are
+    /// stable are returned.
     pub settle: bool,
     /// Coulomb's coefficient of friction between object and supporter.
     pub friction: f32,
-    /// How far off the supporter the object is let go, metres, where there is room for that.
+    /// Distance between object and supporter at the release pose, metres; less where the opening is narrower.
     pub clearance: f32,
-    /// Nodes of the object's signed distance field at most: two bytes each, and as much again for where they are.
+    /// Time step of the simulation, seconds, 0.0005 to 0.005. A smaller step takes more time in proportion. A
+    /// larger one is less exact: the contacts of a body at rest must be found at gaps of up to 1.4 mm at
+    /// 0.005 s, instead of 1.0 mm at the default, 0.004 s, and the distance field is exact only up to about a
+    /// voxel. The probability is fitted to poses that were found with the default.
+    pub time_step: f32,
+    /// Time that a released object has to come to rest or fall, seconds, 0.1 to 60. An object that does
+    /// neither is still moving and no pose. Objects that swing or slide for long may need more.
+    /// [`let_go`](crate::hanging::let_go) has its own limit of four seconds.
+    pub settle_time: f32,
+    /// Speed below which an object in contact is at rest, m/s, 0.0001 to 0.1: no point of it moves faster,
+    /// averaged over 80 ms. A larger value ends simulations earlier, and a slow slide passes for rest; with a
+    /// smaller one, an object that rocks or creeps is still moving.
+    pub rest_speed: f32,
+    /// Maximum number of nodes of the object's signed distance field. A node takes two bytes, and the index
+    /// of the field as much again.
     pub voxels: usize,
-    /// Poses that are let go at most while none stays; once one does, no more than a quarter of that in all.
+    /// Maximum number of released poses while none is stable. Once one is stable, the maximum is a quarter of
+    /// it.
     pub settle_attempts: usize,
-    /// No more poses are let go when so many stayed firmly: with a probability of 97.5 % or more, be it twice in the same place. More
-    /// give more different poses to choose from.
+    /// Number of firm releases after which the search ends. A release is firm if the probability of its rest
+    /// pose is at least 97.5 %; two releases with the same rest pose count twice. A larger number gives more
+    /// different poses to choose from.
     pub firm_enough: usize,
-    /// Poses that are less likely to hang than this are none.
+    /// Minimum probability that a returned pose hangs.
     pub min_probability: f32,
 }
 
 impl Params {
-    /// The published method with the constants of its Table I.
+    /// The published method, with the values of the paper's Table I.
     pub const fn paper() -> Self {
         Self {
             seed: 0,
@@ -135,6 +160,9 @@ impl Params {
             settle: false,
             friction: 0.4,
             clearance: 0.001,
+            time_step: 0.004,
+            settle_time: 3.0,
+            rest_speed: 0.005,
             voxels: 0,
             settle_attempts: 0,
             firm_enough: 0,
@@ -144,9 +172,9 @@ impl Params {
 
     /// Checks every value against its range.
     pub fn validate(&self) -> Result<(), ParamsError> {
-        // Counts are bounded so that working memory and index types stay small; cosines may be anything that
+        // The bounds of counts keep working memory and index types small. Cosines may have any value that
         // still selects.
-        let ranges: [(&'static str, f32, f32, f32); 27] = [
+        let ranges: [(&'static str, f32, f32, f32); 30] = [
             ("samples", self.samples as f32, 100.0, MAX_SAMPLES as f32),
             ("object_contact_cosine", self.object_contact_cosine, 0.0, 1.0),
             ("cluster_bandwidth", self.cluster_bandwidth, 0.001, 1.0),
@@ -170,6 +198,9 @@ impl Params {
             ("contact_area_weight", self.contact_area_weight, 0.0, 1.0),
             ("friction", self.friction, 0.0, 2.0),
             ("clearance", self.clearance, 0.0, 0.01),
+            ("time_step", self.time_step, 0.0005, 0.005),
+            ("settle_time", self.settle_time, 0.1, 60.0),
+            ("rest_speed", self.rest_speed, 0.0001, 0.1),
             ("voxels", self.voxels as f32, 0.0, MAX_VOXELS as f32),
             ("settle_attempts", self.settle_attempts as f32, 0.0, 10_000.0),
             ("firm_enough", self.firm_enough as f32, 0.0, 10_000.0),
@@ -180,7 +211,7 @@ impl Params {
                 return Err(ParamsError::OutOfRange { name, value, min, max });
             }
         }
-        // Without its distances nothing can be let go, and contacts are only worth that.
+        // The simulation needs the distance field, and contact candidates need the simulation.
         if self.voxels == 0 && self.uses_mechanics() {
             return Err(ParamsError::OutOfRange {
                 name: "voxels",
@@ -206,12 +237,12 @@ impl Params {
         self.settle || self.candidates == Candidates::Contacts
     }
 
-    /// The unit vector against gravity, in supporter coordinates.
+    /// Unit vector opposite to gravity, in supporter coordinates.
     pub(crate) fn up(&self) -> Vector {
         -Vector::from(self.gravity).normalize()
     }
 
-    /// The centre of mass in object coordinates.
+    /// Centre of mass in object coordinates, metres.
     pub(crate) fn resolve_centre_of_mass(&self, sample_mean: Point, volume_centroid: Option<Point>) -> Point {
         match self.centre_of_mass {
             CentreOfMass::SampleMean => sample_mean,
@@ -221,7 +252,8 @@ impl Params {
     }
 }
 
-/// Ours: contact on contact about the true centre of mass, and then gravity decides.
+/// The method of this library: pairs of contact candidates and the centroid of the volume, with simulation
+/// under gravity.
 impl Default for Params {
     fn default() -> Self {
         Self {
@@ -238,36 +270,37 @@ impl Default for Params {
     }
 }
 
-/// More nodes than this are finer than any mesh of a thing that a robot hangs.
+/// Maximum of [`Params::voxels`]: a finer field than any mesh of an object that a robot hangs.
 pub(crate) const MAX_VOXELS: usize = 10_000_000;
 
-/// More samples than this serve no object that a robot can hold.
+/// Maximum of [`Params::samples`]: more samples do not improve the result for any object that a robot can
+/// hold.
 pub const MAX_SAMPLES: usize = 500_000;
-/// Half a degree is finer than any of the data.
+/// Maximum number of directions or rays: half a degree is finer than any of the data.
 pub(crate) const MAX_DIRECTIONS: usize = 720;
 
-/// A constant that is out of its range.
+/// Error: a parameter is invalid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ParamsError {
-    /// A number outside its range, or not a number.
+    /// A number is outside its range or not a number.
     OutOfRange {
-        /// The field of [`Params`].
+        /// Name of the field of [`Params`].
         name: &'static str,
-        /// What it is.
+        /// Value of the field.
         value: f32,
-        /// The least that it may be.
+        /// Minimum of the range.
         min: f32,
-        /// The most that it may be.
+        /// Maximum of the range.
         max: f32,
     },
     /// `gravity` is zero, infinite or not a number.
     Gravity {
-        /// What it is.
+        /// Value of the field.
         gravity: [f32; 3],
     },
-    /// `centre_of_mass` is infinite, not a number, or farther away than any coordinate may be.
+    /// `centre_of_mass` is infinite, not a number, or beyond the maximum coordinate.
     CentreOfMass {
-        /// What it is.
+        /// Value of the point.
         point: [f32; 3],
     },
 }
@@ -278,7 +311,9 @@ impl core::fmt::Display for ParamsError {
             Self::OutOfRange { name, value, min, max } => {
                 write!(f, "{name} = {value} is outside its range, {min} to {max}")
             }
-            Self::Gravity { gravity } => write!(f, "gravity = {gravity:?} gives no direction"),
+            Self::Gravity { gravity } => {
+                write!(f, "gravity = {gravity:?} has no direction; it must be finite and not zero")
+            }
             Self::CentreOfMass { point } => write!(f, "centre_of_mass = {point:?} is not a point in metres"),
         }
     }
@@ -305,6 +340,9 @@ mod tests {
             Params { similar_radius: f32::NAN, ..Params::paper() },
             Params { samples: 0, ..Params::paper() },
             Params { samples: usize::MAX, ..Params::paper() },
+            Params { time_step: 0.01, ..Params::paper() },
+            Params { settle_time: 0.0, ..Params::paper() },
+            Params { rest_speed: 0.0, ..Params::paper() },
             Params { gravity: [0.0; 3], ..Params::paper() },
             Params { gravity: [f32::MAX; 3], ..Params::paper() },
             Params { centre_of_mass: CentreOfMass::Given([0.0, f32::NAN, 0.0]), ..Params::paper() },

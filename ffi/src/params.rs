@@ -187,6 +187,10 @@ impl hangpose_params {
             settle,
             friction,
             clearance,
+            // The C interface has no fields for these: it uses the defaults.
+            time_step: _,
+            settle_time: _,
+            rest_speed: _,
             voxels,
             settle_attempts,
             firm_enough,
@@ -262,6 +266,7 @@ impl hangpose_params {
             1 => true,
             value => return Err(Failure::Choice { field: "params.settle", value, most: 1 }),
         };
+        let defaults = Params::default();
         let params = Params {
             seed: self.seed,
             gravity: self.gravity,
@@ -291,6 +296,9 @@ impl hangpose_params {
             settle,
             friction: self.friction,
             clearance: self.clearance,
+            time_step: defaults.time_step,
+            settle_time: defaults.settle_time,
+            rest_speed: defaults.rest_speed,
             voxels: self.voxels as usize,
             settle_attempts: self.settle_attempts as usize,
             firm_enough: self.firm_enough as usize,

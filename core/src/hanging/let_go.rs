@@ -33,6 +33,6 @@ pub fn let_go(
     let mut arena = Arena::new(memory, predict_bytes(&supporter.limits()))?;
     let sleeps = arena.slice::<Sleep>(Support::sleepers(points))?;
     let mut meter = Meter::new(monitor);
-    let settled = swing_out((&body, support), release, &-params.up(), params.friction, sleeps, &mut meter);
+    let settled = swing_out((&body, support), release, &-params.up(), params, sleeps, &mut meter);
     Ok(settled.map(|settled| LetGo { fate: settled.fate, pose: settled.pose }))
 }

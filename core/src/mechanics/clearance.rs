@@ -1,11 +1,15 @@
-//! Whether a pose keeps the object off the supporter.
+//! Tests whether an object is clear of the supporter.
 
+use super::constants::{FIELD_BAND_RATIO, FIELD_ERROR, PATCH_PENETRATION};
 use super::touch::nearest_on_patch;
 use super::{Body, Support};
 use crate::geometry::{Point, Pose};
 use crate::monitor::{Meter, Stop};
 
-/// A place of the supporter that is not farther than `clearance` metres from the object at `pose`, or that is deep in it, if there is one.
+/// Returns a point of the supporter that is within `clearance` metres of the object at `pose` or deep inside
+/// it, if there is one.
+///
+/// It queries the distance field, not the mesh, and limits `clearance` to the field's band.
 pub(crate) fn first_within(
     scene: (&Body, &Support),
     pose: &Pose,
@@ -13,16 +17,19 @@ pub(crate) fn first_within(
     meter: &mut Meter,
 ) -> Result<Option<Point>, Stop> {
     let field = scene.0.field;
-    // Beyond the band the field may say no more than that a point is there.
-    let clearance = clearance.min(0.9 * field.band());
-    let is_off = |point: &Point, radius: f32| field.distance(point) - radius > clearance;
-    first(scene, pose, clearance, is_off, |point| is_off(point, 0.0), |_, _| false, meter)
+    // Beyond the band the field is only a lower bound of the distance.
+    let clearance = clearance.min(FIELD_BAND_RATIO * field.band());
+    let is_ball_clear = |point: &Point, radius: f32| field.distance(point) - radius > clearance;
+    first_hit(scene, pose, clearance, is_ball_clear, |point| is_ball_clear(point, 0.0), |_, _| false, meter)
 }
 
-/// Whether every point of the supporter is farther than `clearance` metres from the object's surface, exactly, and no bar of it passes
-/// through that between its points, be it of something without an inside. It is not clear either where the field overlooks something
-/// thin, such as the strings of a racquet, that passes closer to a point of the supporter than the points are apart: it may run through
-/// between them.
+/// Whether the supporter is clear of the object's surface at `pose`. Three conditions must hold:
+///
+/// - Every point of the supporter is farther than `clearance` metres from the mesh, exactly.
+/// - No bar of the supporter passes through the mesh between its points. This covers meshes without an
+///   inside.
+/// - No part of the mesh that the field misses, such as the strings of a racquet, is closer to a point than
+///   half the reach of the largest patch. Such a part may pass between the points.
 pub(crate) fn is_off_surface(
     scene: (&Body, &Support),
     pose: &Pose,
@@ -31,52 +38,50 @@ pub(crate) fn is_off_surface(
 ) -> Result<bool, Stop> {
     let (field, surface, thin) = (scene.0.field, scene.0.surface, 0.5 * scene.1.reach);
     let greatest = clearance.max(scene.1.reach);
-    let is_off = |point: &Point, radius: f32| !surface.is_within(point, radius + greatest);
-    let is_point_off = |point: &Point| {
-        let is_overlooked = || {
-            field.distance(point) > thin + OVERLOOKED * field.voxel_size() && surface.is_within(point, thin)
+    let is_ball_clear = |point: &Point, radius: f32| !surface.is_within(point, radius + greatest);
+    let is_point_clear = |point: &Point| {
+        let is_missed_by_field = || {
+            field.distance(point) > thin + FIELD_ERROR * field.voxel_size() && surface.is_within(point, thin)
         };
-        !surface.is_within(point, clearance) && !is_overlooked()
+        !surface.is_within(point, clearance) && !is_missed_by_field()
     };
     let crosses = |from: &Point, to: &Point| {
-        let way = to - from;
-        let length = way.norm();
-        length > 0.0 && surface.closest_hit(from, &(way / length)).is_some_and(|hit| hit < length)
+        let segment = to - from;
+        let length = segment.norm();
+        length > 0.0 && surface.closest_hit(from, &(segment / length)).is_some_and(|hit| hit < length)
     };
-    Ok(first(scene, pose, greatest, is_off, is_point_off, crosses, meter)?.is_none())
+    Ok(first_hit(scene, pose, greatest, is_ball_clear, is_point_clear, crosses, meter)?.is_none())
 }
 
-/// The field is farther off than its error, in voxels, only where it overlooks something.
-const OVERLOOKED: f32 = 0.3;
-
-/// A patch that is deeper in the body than this, metres, is seen to run through it; less may be what patches are off the surface.
-const DEEP: f32 = 0.001;
-
-/// The first point of the supporter of which `is_point_off`, asked in object coordinates, is not true, or the deepest place of a patch
-/// that is deep in the body, or the point of one on a bar between whose line's ends `crosses` is true. Points that are farther than
-/// `distance` from a ball around the body are off, and so is everything within a radius of a point of which `is_off` says so.
-fn first(
+/// Returns the first part of the supporter that is not clear of the object: a point for which
+/// `is_point_clear` is false, the deepest point of a patch that penetrates the object by more than
+/// [`PATCH_PENETRATION`], or the centre of a patch of a bar whose segment `crosses` the object.
+///
+/// The closures take object coordinates. `is_ball_clear` is true if every point within a radius of a point is
+/// clear; it prunes the tree, as does the distance to the bounding sphere: everything farther than `distance`
+/// metres from it is clear.
+fn first_hit(
     (body, support): (&Body, &Support),
     pose: &Pose,
     distance: f32,
-    is_off: impl Fn(&Point, f32) -> bool,
-    is_point_off: impl Fn(&Point) -> bool,
+    is_ball_clear: impl Fn(&Point, f32) -> bool,
+    is_point_clear: impl Fn(&Point) -> bool,
     crosses: impl Fn(&Point, &Point) -> bool,
     meter: &mut Meter,
 ) -> Result<Option<Point>, Stop> {
     let to_object = pose.inverse();
     let rotation = pose.rotation.to_rotation_matrix();
     let points = support.tree.points();
-    let deepest = |patch: usize| {
-        let (place, patch) = (support.place(patch), &support.patches[patch]);
-        let at = to_object * place;
-        if let Ok(nearest) = nearest_on_patch(body, patch, &rotation, &at, -DEEP)
-            && nearest.gap < -DEEP
+    let hit_of_patch = |patch: usize| {
+        let (position, patch) = (support.position(patch), &support.patches[patch]);
+        let at = to_object * position;
+        if let Ok(nearest) = nearest_on_patch(body, patch, &rotation, &at, -PATCH_PENETRATION)
+            && nearest.gap < -PATCH_PENETRATION
         {
             return Some(pose * nearest.at);
         }
-        let [from, to] = patch.line().map(|step| at + rotation.inverse_transform_vector(&step));
-        crosses(&from, &to).then_some(place)
+        let [from, to] = patch.bar_segment().map(|offset| at + rotation.inverse_transform_vector(&offset));
+        crosses(&from, &to).then_some(position)
     };
     let (mut found, mut queries) = (None, 0);
     support.tree.bvh().descend(|_, node| {
@@ -86,14 +91,14 @@ fn first(
         let aabb = node.aabb();
         let (centre, radius) = (to_object * aabb.centre(), 0.5 * aabb.diagonal());
         queries += 1;
-        if body.is_beyond(&centre, radius + distance) || is_off(&centre, radius) {
+        if body.is_beyond(&centre, radius + distance) || is_ball_clear(&centre, radius) {
             return false;
         }
         if let Some(items) = node.items() {
             queries += items.len();
-            let is_near = |index: &usize| !is_point_off(&(to_object * points[*index]));
-            let near = items.clone().find(is_near).map(|index| points[index]);
-            found = near.or_else(|| support.patches_of(&items).find_map(deepest));
+            let is_hit = |index: &usize| !is_point_clear(&(to_object * points[*index]));
+            let hit = items.clone().find(is_hit).map(|index| points[index]);
+            found = hit.or_else(|| support.patches_of(&items).find_map(hit_of_patch));
         }
         found.is_none()
     });

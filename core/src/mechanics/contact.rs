@@ -1,45 +1,41 @@
-//! The contacts that a step is solved for.
+//! Contacts between the body and the supporter.
 
 use super::body::State;
+use super::constants::{BEHIND_COSINE, MAX_SOLVER_CONTACTS, MERGE_COSINE, MERGE_DISTANCE, SHEET_DEPTH};
 use super::touch::{Nearest, refine};
 use super::{Body, Support};
 use crate::geometry::{Point, Vector};
 use heapless::Vec;
 use nalgebra::Rotation3;
 
-/// Contacts solved for at once, at most; a rigid body needs no more than a handful.
-pub(crate) const MOST: usize = 12;
-
-/// A place where the body is at, or close to, the supporter.
+/// A point where the body touches a patch of the supporter, or may touch it within the next steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Contact {
-    /// Of the supporter's patch.
+    /// Index of the patch.
     pub(crate) index: u32,
-    /// Supporter coordinates, metres.
+    /// Position in supporter coordinates, metres.
     pub(crate) position: Point,
-    /// Unit vector along which the supporter pushes the body.
+    /// Contact normal: the unit vector along which the supporter pushes the body, in supporter coordinates.
     pub(crate) normal: Vector,
-    /// Distance between the surfaces, negative in penetration, metres.
+    /// Signed distance between the surfaces, negative in penetration, metres.
     pub(crate) gap: f32,
-    /// Where on the patch, along and across it, metres.
+    /// Offset on the patch, along and across it, metres.
     on_patch: [f32; 2],
-    /// The touched point of the body against its centre of mass, in its own coordinates.
+    /// Contact point relative to the centre of mass, in object coordinates, metres.
     pub(super) anchor: Vector,
-    /// The gap less the anchor's place along the normal: what stays while the normal does.
+    /// Gap minus the component of the position along the normal, metres: constant while the contact moves
+    /// along with the body.
     offset: f32,
 }
 
-pub(crate) type Contacts = Vec<Contact, MOST>;
-
-/// A body that the patch's push would bring closer, by more than this cosine, is behind the patch: it touches another side of the
-/// supporter, not this one,
-const BEHIND: f32 = 0.3;
-/// unless it is less than so many voxels away: then it is a sheet without an inside, whose gap is positive on either side, that has
-/// begun to pass through.
-const SHEET: f32 = 0.5;
+pub(crate) type Contacts = Vec<Contact, MAX_SOLVER_CONTACTS>;
 
 impl Contact {
-    /// Of a patch with what is nearest to it, if they touch on that side.
+    /// Makes a contact of a patch and its nearest point to the body.
+    ///
+    /// Returns `None` if the body is behind the patch: then it touches another side of the supporter. A body
+    /// that is less than [`SHEET_DEPTH`] behind the patch is a sheet without an inside that has begun to pass
+    /// through; its gap becomes negative.
     pub(super) fn new(
         (body, support): (&Body, &Support),
         state: &State,
@@ -47,9 +43,9 @@ impl Contact {
         &Nearest { at, offset: on_patch, gap, gradient }: &Nearest,
     ) -> Option<Self> {
         let gradient = state.rotation * gradient;
-        let normal = support.patches[index].push(-gradient, on_patch);
-        let is_behind = gap > 0.0 && normal.dot(&gradient) > BEHIND;
-        if is_behind && gap > SHEET * body.field.voxel_size() {
+        let normal = support.patches[index].contact_normal(-gradient, on_patch);
+        let is_behind = gap > 0.0 && normal.dot(&gradient) > BEHIND_COSINE;
+        if is_behind && gap > SHEET_DEPTH * body.field.voxel_size() {
             return None;
         }
         let gap = if is_behind { -gap } else { gap };
@@ -59,7 +55,8 @@ impl Contact {
         Some(Self { index: index as u32, position, normal, gap, on_patch, anchor, offset })
     }
 
-    /// Asks the body's surface itself instead of its field; false if it turns out that they touch on another side.
+    /// Refines the contact with the mesh instead of the field. Returns false if the body turns out to be
+    /// behind the patch.
     pub(super) fn refine(
         &mut self,
         scene: (&Body, &Support),
@@ -67,10 +64,11 @@ impl Contact {
         rotation: &Rotation3<f32>,
     ) -> bool {
         let ((body, support), index) = (scene, self.index as usize);
-        let place = body.centre + rotation.inverse_transform_vector(&(support.place(index) - state.centre));
+        let patch_at =
+            body.centre + rotation.inverse_transform_vector(&(support.position(index) - state.centre));
         let gradient = -rotation.inverse_transform_vector(&self.normal);
         let found = Nearest { at: body.centre + self.anchor, offset: self.on_patch, gap: self.gap, gradient };
-        let nearest = refine(body, &support.patches[index], rotation, &place, found);
+        let nearest = refine(body, &support.patches[index], rotation, &patch_at, found);
         let refined = Self::new(scene, state, index, &nearest);
         if let Some(contact) = refined {
             *self = contact;
@@ -78,53 +76,53 @@ impl Contact {
         refined.is_some()
     }
 
-    /// Goes along with the body to `state`; `rotation` is that of the state.
-    pub(super) fn carry(&mut self, state: &State, rotation: &Rotation3<f32>) {
+    /// Moves the contact point along with the body to `state`; `rotation` is that of the state.
+    pub(super) fn move_with_body(&mut self, state: &State, rotation: &Rotation3<f32>) {
         self.position = state.centre + rotation * self.anchor;
-        // The supporter stands still: the gap opens by what the touched point moved along the normal.
+        // The supporter is fixed: the gap grows by the displacement of the contact point along the normal.
         self.gap = self.offset + self.position.coords.dot(&self.normal);
     }
 }
 
-/// Contacts closer to each other than this, metres, and with similar normals are one.
-const APART: f32 = 0.003;
-
-/// Adds a contact unless a deeper one stands for it.
-pub(super) fn keep(contacts: &mut Contacts, contact: Contact) {
+/// Adds a contact, or merges it with one that is close and has a similar normal; the deeper of the two
+/// remains.
+pub(super) fn add_contact(contacts: &mut Contacts, contact: Contact) {
     let same = contacts.iter().position(|other| {
-        (other.position - contact.position).norm_squared() < APART * APART
-            && other.normal.dot(&contact.normal) > 0.9
+        (other.position - contact.position).norm_squared() < MERGE_DISTANCE * MERGE_DISTANCE
+            && other.normal.dot(&contact.normal) > MERGE_COSINE
     });
-    if let Some(place) = same {
-        if contact.gap < contacts[place].gap {
-            contacts[place] = contact;
+    if let Some(slot) = same {
+        if contact.gap < contacts[slot].gap {
+            contacts[slot] = contact;
         }
         return;
     }
     if let Err(contact) = contacts.push(contact) {
-        make_room(contacts, contact);
+        replace_most_redundant(contacts, contact);
     }
 }
 
-/// Puts a contact into a full list. Of the two that say most nearly the same, the one that is farther off makes way: where flat lies
-/// on flat the corners matter, and the deepest points, all near one corner today and another tomorrow, would rock it about.
-fn make_room(contacts: &mut Contacts, contact: Contact) {
-    // Of two at one place, one on each side of a bar, both matter.
-    let unlike =
+/// Adds a contact to a full list. Of the two most similar contacts, the one with the larger gap is dropped.
+///
+/// Between flat faces the corners matter. The deepest contacts alone would be near one corner in one step and
+/// near another in the next, and the body would rock.
+fn replace_most_redundant(contacts: &mut Contacts, contact: Contact) {
+    // Opposite normals, as on the two sides of a thin bar, make contacts that are close less similar.
+    let dissimilarity =
         |a: &Contact, b: &Contact| (a.position - b.position).norm_squared() * (2.0 - a.normal.dot(&b.normal));
     let at = |contacts: &Contacts, i: usize| contacts.get(i).copied().unwrap_or(contact);
     let (mut least, mut pair) = (f32::INFINITY, [0, 0]);
     for a in 0..=contacts.len() {
         for b in 0..a {
-            let distance = unlike(&at(contacts, a), &at(contacts, b));
+            let distance = dissimilarity(&at(contacts, a), &at(contacts, b));
             if distance < least {
                 (least, pair) = (distance, [a, b]);
             }
         }
     }
     let [a, b] = pair;
-    let goes = if at(contacts, a).gap >= at(contacts, b).gap { a } else { b };
-    if let Some(slot) = contacts.get_mut(goes) {
+    let dropped = if at(contacts, a).gap >= at(contacts, b).gap { a } else { b };
+    if let Some(slot) = contacts.get_mut(dropped) {
         *slot = contact;
     }
 }

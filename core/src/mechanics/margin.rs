@@ -1,52 +1,56 @@
-//! How firmly a resting object stays.
+//! Stability margins of a resting object.
 
-use super::motion::{Motion, Settings, TIME_STEP};
+use super::constants::{DEPARTURE_TIME, FORCE_STEPS, GRAVITY, SINKING_TILT, TILT_FRICTION_FACTOR, TILT_RATE};
+use super::motion::{Motion, Settings};
 use super::neighbourhood::Sleep;
-use super::settle::most_sinking;
-use super::{Body, GRAVITY, Support};
+use super::settle::max_sinking;
+use super::{Body, Support};
 use crate::geometry::{Point, Pose, Vector, rotate_about};
 use crate::monitor::{Meter, Stop};
+use crate::params::Params;
 
-/// Directions in which gravity is tilted.
+/// Number of horizontal directions in which gravity is tilted.
 pub const DIRECTIONS: usize = 8;
-/// Contacts that are told of, at most.
+/// Maximum number of reported contacts.
 pub const MAX_CONTACTS: usize = 8;
 
-/// By how much an object stays up.
+/// Stability margins of an object at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Margin {
-    /// How far gravity may tilt, radians, with 70 % of the friction, towards each of eight horizontal directions: the first is the
-    /// supporter's x axis (or its y axis, where gravity is along x, made perpendicular to gravity), the others follow counter-clockwise
-    /// seen from above. At most [`Margin::MOST_TILT`], where the search ends; zero for directions that were not tried any more, because
-    /// another is hopeless.
+    /// Largest tilt of gravity that the object survives, radians, with 70 % of the friction, towards each of
+    /// eight horizontal directions. The first direction is the supporter's x axis (or its y axis, where
+    /// gravity is along x), made perpendicular to gravity; the others follow counter-clockwise seen from
+    /// above. At most [`Margin::MOST_TILT`], where the test ends. Zero for directions that were not tested
+    /// because the tilt in another one was too small.
     pub tilts: [f32; DIRECTIONS],
-    /// How long it stays, seconds, when gravity tilts by [`Margin::JOLT`] at once, towards where it survives the least tilt, and nothing
-    /// but friction stops its swing: as it does when a robot that carries the supporter starts or stops with 0.4 g.
-    /// [`Margin::MOST_JOLT_TIME`] if it is still there then; zero if that was not tried, because some tilt is hopeless.
+    /// Duration for which the object stays, seconds, when gravity suddenly tilts by [`Margin::JOLT`] towards
+    /// the direction of the least tilt and only friction ends its swing: a robot that carries the supporter
+    /// starts or stops with 0.4 g. It is [`Margin::MOST_JOLT_TIME`] if the object is still there then, and
+    /// zero if the jolt was not tested because some tilt was too small.
     pub jolt_time: f32,
-    /// How far the centre of mass sank at most, metres, while gravity tilted by up to 0.9 radians: what comes to lie deeper when it is
-    /// shaken does not lie firmly where it is.
+    /// Largest drop of the centre of mass, metres, while gravity tilted by up to 0.9 radians. An object that
+    /// drops when it is shaken lies on a ledge, not firmly.
     pub tilted_sinking: f32,
-    /// The least rise of the centre of mass, metres, over the ways of escape that were found: what an escape costs over `m g`
-    /// (escape energy: Dong and Pokorny, arXiv 2309.01224). An upper bound of the least that any escape costs, and the highest
-    /// rise seen where none was found.
+    /// Least rise of the centre of mass, metres, over the escapes that were found; where none was found, the
+    /// highest rise that was seen. Times `m g` it is an escape energy (Dong and Pokorny, arXiv 2309.01224):
+    /// an upper bound of the least energy of any escape.
     pub escape_rise: f32,
-    /// The same over the distance from the contacts to the centre of mass; no unit.
+    /// [`escape_rise`](Self::escape_rise) over the distance from the contacts to the centre of mass; no unit.
     pub escape_ratio: f32,
-    /// The speed of a knock that would carry the centre of mass over that rise, `sqrt(2 g h)`, m/s.
+    /// Speed of a knock that carries the centre of mass over the rise, `sqrt(2 g h)`, m/s.
     pub knock_speed: f32,
-    /// How far the centre of mass may be from where it was taken to be, metres, square to the line from the contacts: what turns
-    /// that line as far as the least of the tilts does.
+    /// Error of the centre of mass that the object tolerates, metres, perpendicular to the line from the
+    /// contacts to it: an error of this size turns the line by the least tilt.
     pub centre_of_mass_radius: f32,
 }
 
 impl Margin {
-    /// Gravity is tilted up to this, radians.
+    /// Largest tilt of gravity that is tested, radians.
     pub const MOST_TILT: f32 = 1.2;
-    /// A jolt tilts gravity by this, radians: 21.8 degrees, where friction of 0.4 ends.
+    /// Tilt of gravity by a jolt, radians: 21.8 degrees, the friction angle for a coefficient of 0.4.
     pub const JOLT: f32 = 0.380_506;
-    /// It is watched for this long, seconds.
+    /// Duration of the jolt test, seconds.
     pub const MOST_JOLT_TIME: f32 = 1.0;
 
     /// The least of the tilts, radians.
@@ -55,15 +59,15 @@ impl Margin {
     }
 }
 
-/// A place where the supporter bears the object, in supporter coordinates.
+/// A contact that carries the object at rest, in supporter coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Contact {
-    /// Metres.
+    /// Position, metres.
     pub position: Point,
-    /// Unit vector in which the supporter pushes.
+    /// Contact normal: the unit vector along which the supporter pushes the object.
     pub normal: Vector,
-    /// How hard it pushes along it, in multiples of the object's weight.
+    /// Normal force, in multiples of the object's weight.
     pub force: f32,
 }
 
@@ -73,64 +77,53 @@ impl Default for Contact {
     }
 }
 
-/// The margin and what bears.
+/// The stability margins and the contacts of a rest pose.
 pub(crate) struct Firmness {
     pub(crate) margin: Margin,
     pub(crate) contacts: heapless::Vec<Contact, MAX_CONTACTS>,
 }
 
-/// How fast gravity tilts, rad/s: slowly against how fast things fall, so that the angle at which it leaves is the angle at which
-/// it began to.
-const RATE: f32 = 2.5;
-/// Friction is taken to be so much less while gravity tilts: what tilts at once, as when a robot stops, swings as far again beyond, and
-/// what would hold it in the middle of the swing lets it slip at the end.
-const SLIPPERY: f32 = 0.7;
-/// Up to this tilt, radians, what hangs well does not sink: beyond, what lies in a hook rolls out of it.
-const SINKING_TILT: f32 = 0.9;
-/// Without contact for so long, seconds, it has left.
-const GONE: f32 = 0.1;
-
-/// Tilts gravity in every direction from `rest`. `least` is the tilt, radians, below which the rest of the directions do not matter
-/// any more: those that are not tried have a tilt of zero.
+/// Tests the stability of the rest pose `rest`: gravity tilts in every direction, and then it jolts. A tilt
+/// below `least`, radians, ends the test: the tilts of the remaining directions and the jolt time are zero.
 pub(crate) fn firmness(
     scene: (&Body, &Support),
     rest: &Pose,
     down: &Vector,
-    friction: f32,
+    params: &Params,
     least: f32,
     sleeps: &mut [Sleep],
     meter: &mut Meter,
 ) -> Result<Firmness, Stop> {
     let body = scene.0;
-    let settings = Settings::damped(friction);
+    let settings = Settings::damped(params);
     let start = body.at(rest);
     let contacts = {
         let mut motion = Motion::new(scene, start, settings, sleeps);
-        for _ in 0..3 {
+        for _ in 0..FORCE_STEPS {
             motion.step(&(down * GRAVITY), meter)?;
         }
         let mut contacts = heapless::Vec::new();
-        for (position, normal, force) in motion.bearing() {
-            // There is room for all that matter; more of a flat contact say nothing new.
+        for (position, normal, force) in motion.loaded_contacts() {
+            // The capacity suffices for all that matter; more contacts between flat faces are redundant.
             let _ = contacts.push(Contact { position, normal, force });
         }
         contacts
     };
-    let (mut weight, mut place) = (0.0, Vector::zeros());
+    let (mut weight, mut moment) = (0.0, Vector::zeros());
     for contact in &contacts {
         weight += contact.force;
-        place += contact.position.coords * contact.force;
+        moment += contact.position.coords * contact.force;
     }
-    let lever = if weight > 0.0 { (start.centre.coords - place / weight).norm() } else { 0.0 };
+    let lever = if weight > 0.0 { (start.centre.coords - moment / weight).norm() } else { 0.0 };
 
-    let tilting = Settings::damped(SLIPPERY * friction);
+    let tilting = Settings { friction: TILT_FRICTION_FACTOR * params.friction, ..settings };
     let mut margin = Margin::default();
     let (mut escape, mut highest) = (f32::INFINITY, 0.0_f32);
-    let (mut weakest, mut is_hopeless) = (0, false);
+    let (mut weakest, mut is_too_small) = (0, false);
     for k in 0..DIRECTIONS {
         let motion = Motion::new(scene, start, tilting, sleeps);
-        let Tilted { held, rise, sinking, left } =
-            tilt_until_it_leaves(motion, body, down, &towards(k, down), meter)?;
+        let TiltOutcome { held, rise, sinking, left } =
+            tilt_gravity(motion, body, down, &tilt_direction(k, down), meter)?;
         margin.tilts[k] = held;
         margin.tilted_sinking = margin.tilted_sinking.max(sinking);
         highest = highest.max(rise);
@@ -140,14 +133,14 @@ pub(crate) fn firmness(
         if held < margin.tilts[weakest] {
             weakest = k;
         }
-        is_hopeless = held < least;
-        if is_hopeless {
+        is_too_small = held < least;
+        if is_too_small {
             break;
         }
     }
-    if !is_hopeless {
-        let motion = Motion::new(scene, start, Settings::undamped(friction), sleeps);
-        margin.jolt_time = jolt_until_it_leaves(motion, body, down, &towards(weakest, down), meter)?;
+    if !is_too_small {
+        let motion = Motion::new(scene, start, Settings::undamped(params), sleeps);
+        margin.jolt_time = jolt_gravity(motion, body, down, &tilt_direction(weakest, down), meter)?;
     }
     margin.escape_rise = if escape.is_finite() { escape } else { highest };
     margin.escape_ratio = if lever > 0.0 { margin.escape_rise / lever } else { 0.0 };
@@ -156,100 +149,108 @@ pub(crate) fn firmness(
     Ok(Firmness { margin, contacts })
 }
 
-/// The horizontal direction with this number: see [`Margin::tilts`].
-fn towards(direction: usize, down: &Vector) -> Vector {
+/// Unit vector of a horizontal direction, by its index in [`Margin::tilts`].
+fn tilt_direction(direction: usize, down: &Vector) -> Vector {
     let axis = if down.x.abs() < 0.9 { Vector::x() } else { Vector::y() };
     let first = (axis - down * axis.dot(down)).normalize();
     rotate_about(-down, core::f32::consts::TAU * direction as f32 / DIRECTIONS as f32, first)
 }
 
-/// Watches whether the body leaves under a pull that goes on.
-struct Watch {
+/// Detects that the body leaves the supporter while gravity is tilted.
+struct DepartureDetector {
     start: Point,
-    /// Steps without contact.
-    loose: usize,
+    /// Number of steps since the last contact.
+    steps_without_contact: usize,
 }
 
-impl Watch {
+impl DepartureDetector {
     fn new(motion: &Motion) -> Self {
-        Self { start: motion.state.centre, loose: 0 }
+        Self { start: motion.state.centre, steps_without_contact: 0 }
     }
 
-    /// How far the centre of mass has moved, and whether it has left: gravity is tilted by an angle with this cosine, along `pull`.
-    fn look(&mut self, motion: &Motion, body: &Body, pull: &Vector, cos: f32) -> (Vector, bool) {
+    /// Returns the displacement of the centre of mass and whether the body has left, after a step in which
+    /// gravity was along `pull`, tilted by an angle with cosine `cos`.
+    fn update(&mut self, motion: &Motion, body: &Body, pull: &Vector, cos: f32) -> (Vector, bool) {
         let moved = motion.state.centre - self.start;
-        self.loose = if motion.touches { 0 } else { self.loose + 1 };
-        // The swing into the new direction is not a fall.
+        self.steps_without_contact = if motion.touches { 0 } else { self.steps_without_contact + 1 };
+        // The swing into the new direction of gravity is not a fall.
         let swing = body.reach * (1.0 - cos);
-        let gone = (GONE / TIME_STEP) as usize;
-        (moved, self.loose > gone || pull.dot(&moved) > most_sinking(body) + swing)
+        let has_departed = self.steps_without_contact > motion.settings.steps(DEPARTURE_TIME);
+        (moved, has_departed || pull.dot(&moved) > max_sinking(body) + swing)
     }
 }
 
-/// What became of the body when gravity tilted.
+/// Outcome of a slow tilt of gravity.
 #[derive(Default)]
-struct Tilted {
-    /// How far it had tilted before the body left, radians.
+struct TiltOutcome {
+    /// Tilt at the last contact before the body left, radians.
     held: f32,
-    /// How far the centre of mass rose until then, and how far it sank until [`SINKING_TILT`], at most, metres.
+    /// Largest rise of the centre of mass until the last contact, metres.
     rise: f32,
+    /// Largest drop of the centre of mass up to a tilt of [`SINKING_TILT`], metres.
     sinking: f32,
-    /// Whether it left at all.
+    /// Whether the body left.
     left: bool,
 }
 
-/// Tilts gravity towards `across`.
-fn tilt_until_it_leaves(
+/// Tilts gravity slowly from `down` towards the horizontal unit vector `across`, until the body leaves or the
+/// test ends.
+fn tilt_gravity(
     mut motion: Motion,
     body: &Body,
     down: &Vector,
     across: &Vector,
     meter: &mut Meter,
-) -> Result<Tilted, Stop> {
-    let mut watch = Watch::new(&motion);
-    let steps = (Margin::MOST_TILT / (RATE * TIME_STEP)) as usize;
-    let mut tilted = Tilted::default();
+) -> Result<TiltOutcome, Stop> {
+    let mut departure = DepartureDetector::new(&motion);
+    let Settings { time_step, .. } = motion.settings;
+    let steps = motion.settings.steps(Margin::MOST_TILT / TILT_RATE);
+    let mut outcome = TiltOutcome::default();
     for step in 1..=steps {
-        let angle = RATE * TIME_STEP * step as f32;
+        let angle = TILT_RATE * time_step * step as f32;
         let (sin, cos) = libm::sincosf(angle);
         let pull = down * cos + across * sin;
         motion.step(&(pull * GRAVITY), meter)?;
-        let (moved, has_left) = watch.look(&motion, body, &pull, cos);
+        let (moved, has_left) = departure.update(&motion, body, &pull, cos);
         if motion.touches {
-            tilted.held = angle;
+            outcome.held = angle;
             let sunk = down.dot(&moved);
-            tilted.rise = tilted.rise.max(-sunk);
+            outcome.rise = outcome.rise.max(-sunk);
             if angle < SINKING_TILT {
-                tilted.sinking = tilted.sinking.max(sunk);
+                outcome.sinking = outcome.sinking.max(sunk);
             }
         }
         if has_left {
-            return Ok(Tilted { left: true, ..tilted });
+            return Ok(TiltOutcome { left: true, ..outcome });
         }
     }
-    let left = watch.loose > 0;
-    Ok(Tilted { held: if left { tilted.held } else { Margin::MOST_TILT }, left, ..tilted })
+    let left = departure.steps_without_contact > 0;
+    Ok(TiltOutcome { held: if left { outcome.held } else { Margin::MOST_TILT }, left, ..outcome })
 }
 
-/// How long the body stays when gravity tilts towards `across` at once, seconds.
-fn jolt_until_it_leaves(
+/// Returns the duration for which the body stays when gravity suddenly tilts by [`Margin::JOLT`] towards
+/// `across`, seconds.
+fn jolt_gravity(
     mut motion: Motion,
     body: &Body,
     down: &Vector,
     across: &Vector,
     meter: &mut Meter,
 ) -> Result<f32, Stop> {
-    let mut watch = Watch::new(&motion);
+    let mut departure = DepartureDetector::new(&motion);
     let (sin, cos) = libm::sincosf(Margin::JOLT);
     let pull = down * cos + across * sin;
-    let steps = (Margin::MOST_JOLT_TIME / TIME_STEP) as usize;
+    let Settings { time_step, .. } = motion.settings;
+    // One step less, so that every measured time is below `MOST_JOLT_TIME`, which is reserved for a body that
+    // stays.
+    let steps = motion.settings.steps(Margin::MOST_JOLT_TIME) - 1;
     let mut held = 0.0;
     for step in 1..=steps {
         motion.step(&(pull * GRAVITY), meter)?;
         if motion.touches {
-            held = TIME_STEP * step as f32;
+            held = time_step * step as f32;
         }
-        if watch.look(&motion, body, &pull, cos).1 {
+        if departure.update(&motion, body, &pull, cos).1 {
             return Ok(held);
         }
     }

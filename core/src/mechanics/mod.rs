@@ -1,10 +1,12 @@
-//! What gravity does to an object that is let go: contact, friction, rest, and how firmly it stays.
+//! Rigid-body mechanics: contact, friction, rest poses and stability margins of a released object.
 //!
-//! One rigid body against a supporter that stands still. The body is its signed distance field, the supporter its
-//! points, each a small patch of surface; a step solves for the impulses at their contacts.
+//! One rigid body moves against a fixed supporter. The body is its signed distance field, and the supporter
+//! is a set of small surface patches at its points. Each time step solves for the contact impulses.
+//! `docs/MECHANICS.md` describes the model.
 
 mod body;
 mod clearance;
+mod constants;
 mod contact;
 mod fit;
 mod margin;
@@ -22,6 +24,7 @@ mod touch;
 
 pub(crate) use body::Body;
 pub(crate) use clearance::{first_within, is_off_surface};
+pub use constants::GRAVITY;
 pub use margin::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
 pub(crate) use margin::{Firmness, firmness};
 pub(crate) use motion::Settings;
@@ -30,6 +33,3 @@ pub(crate) use release::release_pose;
 pub use settle::Fate;
 pub(crate) use settle::{Settled, comes_free, settle, swing_out};
 pub(crate) use support::{Room, Support};
-
-/// Standard gravity, m/s².
-pub const GRAVITY: f32 = 9.81;

@@ -1,62 +1,81 @@
-//! The body in motion, a step at a time.
+//! The simulation of the body, one time step at a time.
 
 use super::body::State;
+use super::constants::{CONTACT_MARGIN, DRAG, GRAVITY, SPIN_DRAG, SWING_DRAG, SWING_SPIN_DRAG};
 use super::contact::Contacts;
 use super::neighbourhood::{Neighbourhood, Sleep};
 use super::solver::{self, Impulses};
-use super::{Body, GRAVITY, Support};
+use super::{Body, Support};
 use crate::geometry::{Point, Vector};
 use crate::monitor::{Meter, Stop};
+use crate::params::Params;
 
-/// How the body rubs and comes to rest.
+/// Friction, damping, time step and rest criterion of a simulation.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
-    /// Coulomb's coefficient.
+    /// Coulomb's coefficient of friction.
     pub(crate) friction: f32,
-    /// The rate at which the centre of mass loses speed while there is contact, 1/s.
+    /// Damping rate of the centre of mass while there is contact, 1/s.
     pub(crate) drag: f32,
-    /// The rate at which rotation dies down while there is contact, 1/s.
+    /// Damping rate of the rotation while there is contact, 1/s.
     pub(crate) spin_drag: f32,
+    /// [`Params::time_step`], s.
+    pub(crate) time_step: f32,
+    /// [`Params::settle_time`], s.
+    pub(crate) settle_time: f32,
+    /// [`Params::rest_speed`], m/s.
+    pub(crate) rest_speed: f32,
 }
 
 impl Settings {
-    /// Swings out fast, which does not change where it comes to rest but for what is hardly stable.
-    pub(crate) fn damped(friction: f32) -> Self {
-        Self { friction, drag: 2.0, spin_drag: 15.0 }
+    /// Strong damping, for finding rest poses. It changes where a body rests only if the equilibrium is
+    /// barely stable.
+    pub(crate) fn damped(params: &Params) -> Self {
+        Self::new(params, DRAG, SPIN_DRAG)
     }
 
-    /// Swings out as things do that rub and lose a little at each blow: found by what agrees with Bullet.
-    pub(crate) fn swinging(friction: f32) -> Self {
-        Self { friction, drag: 0.1, spin_drag: 1.5 }
+    /// Realistic damping, of friction and impacts: the agreement with Bullet determined its rates.
+    pub(crate) fn swinging(params: &Params) -> Self {
+        Self::new(params, SWING_DRAG, SWING_SPIN_DRAG)
     }
 
-    /// Swings until friction stops it.
-    pub(crate) fn undamped(friction: f32) -> Self {
-        Self { friction, drag: 0.0, spin_drag: 0.0 }
+    /// No damping: only friction ends a swing.
+    pub(crate) fn undamped(params: &Params) -> Self {
+        Self::new(params, 0.0, 0.0)
+    }
+
+    fn new(params: &Params, drag: f32, spin_drag: f32) -> Self {
+        let &Params { friction, time_step, settle_time, rest_speed, .. } = params;
+        Self { friction, drag, spin_drag, time_step, settle_time, rest_speed }
+    }
+
+    /// Number of time steps in `seconds`, rounded.
+    pub(super) fn steps(&self, seconds: f32) -> usize {
+        libm::roundf(seconds / self.time_step) as usize
+    }
+
+    /// Gap below which a contact is kept, metres: [`CONTACT_MARGIN`], and the distance that gravity closes
+    /// from rest in three steps, `g (3 dt)² / 2`. That is one step more than contacts are used for.
+    fn contact_margin(&self) -> f32 {
+        CONTACT_MARGIN + 4.5 * self.time_step * self.time_step * GRAVITY
     }
 }
 
-/// Seconds a step. Contacts bear because of the gap that they may close in it, so that none is missed.
-pub(crate) const TIME_STEP: f32 = 0.004;
-
-/// Contacts are kept while their gap is below this, metres, so that what rests does not lose and regain them; and gravity may close
-/// them by the rest in three steps, one more than they are used for.
-const NEAR_CONTACT: f32 = 0.0003 + 4.5 * TIME_STEP * TIME_STEP * GRAVITY;
-
+/// A body that moves under gravity, in contact with a supporter.
 pub(crate) struct Motion<'a, 's> {
     pub(crate) state: State,
-    /// Whether the supporter bore any of the body in the last step.
+    /// Whether any contact carried the body in the last step.
     pub(crate) touches: bool,
+    pub(super) settings: Settings,
     body: &'a Body<'a>,
     support: &'a Support<'a>,
-    settings: Settings,
     contacts: Contacts,
     impulses: Impulses,
     neighbourhood: Neighbourhood<'s>,
 }
 
 impl<'a, 's> Motion<'a, 's> {
-    /// From `state`. `sleeps` is working memory, of [`Support::sleepers`].
+    /// Starts at `state`. `sleeps` is working memory of [`Support::sleepers`] elements.
     pub(crate) fn new(
         (body, support): (&'a Body, &'a Support),
         state: State,
@@ -66,52 +85,47 @@ impl<'a, 's> Motion<'a, 's> {
         Self {
             state,
             touches: false,
+            settings,
             body,
             support,
-            settings,
             contacts: Contacts::new(),
             impulses: Impulses::new(),
             neighbourhood: Neighbourhood::new(sleeps),
         }
     }
 
-    /// Lets gravity act for a step: semi-implicit Euler. The term of the gyroscope is left out: what spins so fast that it
-    /// matters does not hang.
+    /// Advances by one time step with semi-implicit Euler; `gravity` is in m/s². The gyroscopic term is left
+    /// out: a body that spins fast enough for it to matter does not hang.
     pub(crate) fn step(&mut self, gravity: &Vector, meter: &mut Meter) -> Result<(), Stop> {
-        const DT: f32 = TIME_STEP;
+        let Settings { friction, drag, spin_drag, time_step: dt, .. } = self.settings;
         let (body, state) = (self.body, &mut self.state);
         let scene = (body, self.support);
-        self.neighbourhood.update(&mut self.contacts, scene, state, (NEAR_CONTACT, DT), meter)?;
-        state.velocity += gravity * DT;
+        let margin = self.settings.contact_margin();
+        self.neighbourhood.update(&mut self.contacts, scene, state, (margin, dt), meter)?;
+        state.velocity += gravity * dt;
         let inverse_inertia = body.inverse_inertia_in(state);
-        self.impulses = solver::solve(
-            state,
-            &inverse_inertia,
-            &self.contacts,
-            &self.impulses,
-            self.settings.friction,
-            DT,
-        );
+        self.impulses = solver::solve(state, &inverse_inertia, &self.contacts, &self.impulses, friction, dt);
         self.touches = self.impulses.iter().any(|impulse| impulse.normal > 0.0);
         if self.touches {
-            state.velocity *= 1.0 / (1.0 + self.settings.drag * DT);
-            state.spin *= 1.0 / (1.0 + self.settings.spin_drag * DT);
+            state.velocity *= 1.0 / (1.0 + drag * dt);
+            state.spin *= 1.0 / (1.0 + spin_drag * dt);
         }
-        let (mut shift, mut turn) = (state.velocity * DT, state.spin * DT);
+        let (mut shift, mut turn) = (state.velocity * dt, state.spin * dt);
         if self.contacts.iter().any(|contact| contact.gap < 0.0) {
-            let (apart, aside) = solver::separate(state, &inverse_inertia, &self.contacts, 0.0);
-            shift += apart;
-            turn += aside;
+            let (shift_out, turn_out) = solver::separate(state, &inverse_inertia, &self.contacts, 0.0);
+            shift += shift_out;
+            turn += turn_out;
         }
-        self.neighbourhood.moves(state, &shift, &turn);
+        self.neighbourhood.record_motion(state, &shift, &turn);
         state.advance(&shift, &turn);
         Ok(())
     }
 
-    /// Where the supporter bears the body: the place, the direction of its push, and its force in multiples of the weight.
-    pub(crate) fn bearing(&self) -> impl Iterator<Item = (Point, Vector, f32)> + '_ {
-        self.contacts.iter().zip(&self.impulses).filter(|(_, impulse)| impulse.normal > 0.0).map(
-            |(contact, impulse)| (contact.position, contact.normal, impulse.normal / (TIME_STEP * GRAVITY)),
-        )
+    /// The contacts that carried the body in the last step: position, contact normal, and normal force in
+    /// multiples of the weight.
+    pub(crate) fn loaded_contacts(&self) -> impl Iterator<Item = (Point, Vector, f32)> + '_ {
+        let weight = self.settings.time_step * GRAVITY;
+        let loaded = self.contacts.iter().zip(&self.impulses).filter(|(_, impulse)| impulse.normal > 0.0);
+        loaded.map(move |(contact, impulse)| (contact.position, contact.normal, impulse.normal / weight))
     }
 }

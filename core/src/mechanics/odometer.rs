@@ -1,42 +1,45 @@
-//! How far the body can have moved, without asking where it was.
+//! Upper bounds of the distance that points of the body have moved, without storing past states.
 
 use super::body::State;
 use crate::geometry::{Point, Vector};
 
-/// Adds up the motion of one point of the body, the pivot, and the turning about it. What hangs swings about where it is held:
-/// there, where contacts are, it moves little, however far its other end does.
+/// Sums up the path length of one point of the body, the pivot, and the rotation about it. A hanging body
+/// swings about its contacts: near them it moves little, however far its other end moves.
 pub(crate) struct Odometer {
-    /// From the centre of mass to the pivot, in the body's coordinates.
+    /// Pivot relative to the centre of mass, in object coordinates, metres.
     pivot: Vector,
-    /// The way of the pivot, metres.
-    way: f32,
-    /// The angle turned, radians.
+    /// Path length of the pivot, metres.
+    path: f32,
+    /// Sum of the rotation angles, radians.
     angle: f32,
 }
 
 impl Odometer {
     pub(crate) fn new(pivot: Vector) -> Self {
-        Self { pivot, way: 0.0, angle: 0.0 }
+        Self { pivot, path: 0.0, angle: 0.0 }
     }
 
-    /// Adds a displacement of the centre of mass and a rotation vector about it.
+    /// Adds a motion from `state`: the displacement of the centre of mass, metres, and the rotation vector
+    /// about it, radians.
     pub(crate) fn add(&mut self, state: &State, shift: &Vector, turn: &Vector) {
-        self.way += (shift + turn.cross(&(state.rotation * self.pivot))).norm();
+        self.path += (shift + turn.cross(&(state.rotation * self.pivot))).norm();
         self.angle += turn.norm();
     }
 
-    /// How far anything of the body within `radius` metres of the pivot can have moved, metres.
+    /// Upper bound of the distance that any point of the body within `radius` metres of the pivot has moved,
+    /// metres.
     pub(crate) fn reading(&self, radius: f32) -> f32 {
-        self.way + self.angle * radius
+        self.path + self.angle * radius
     }
 
-    /// The distance from the pivot to a point, metres.
+    /// Distance from the pivot to a point in supporter coordinates, metres.
     pub(crate) fn radius(&self, state: &State, point: &Point) -> f32 {
         (point - state.centre - state.rotation * self.pivot).norm()
     }
 
-    /// The largest radius of a body whose centre of mass has this reach, metres.
-    pub(crate) fn greatest_radius(&self, reach: f32) -> f32 {
+    /// Upper bound of the distance from the pivot to any point of the body, metres; `reach` is that from the
+    /// centre of mass.
+    pub(crate) fn max_radius(&self, reach: f32) -> f32 {
         reach + self.pivot.norm()
     }
 }

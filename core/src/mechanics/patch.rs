@@ -1,46 +1,43 @@
-//! A piece of the supporter's surface: what is known of it around one of its points.
+//! A patch: a model of the supporter's surface around one of its points.
 
+use super::constants::{BAR_SEGMENT_RATIO, INITIAL_CURVATURE, MIN_PATCH_EXTENT, RIM_RATIO};
 use crate::geometry::{Vector, unit_or};
 use bytemuck::{Pod, Zeroable};
 
-/// A piece of the plane square to the normal at a point of the supporter, bent to each side as the surface is, or a cylinder all around
-/// a wire; and in which directions the surface goes straight on. In supporter coordinates.
+/// A patch of the supporter's surface at one of its points, in supporter coordinates. It is a piece of the
+/// tangent plane, bent in either principal direction with one curvature per side, or a cylinder around a
+/// wire.
+///
+/// A point of the patch is given by its offset along and across it, metres. Sides are numbered: along
+/// forwards, along backwards, across forwards, across backwards.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Patch {
-    /// Unit, out of the solid.
+    /// Unit normal, out of the solid.
     pub(super) normal: Vector,
-    /// Unit, square to the normal: the direction in which the normals around change least, as along a bar.
+    /// Unit tangent in the principal direction of least curvature, as along a bar.
     pub(super) along: Vector,
-    /// How far it goes along and across to either side, metres; of a wire, across it is the radius.
+    /// Half extents along and across, metres. Of a wire, the second one is the radius.
     pub(super) extents: [f32; 2],
-    /// How much the normals turn to each side, 1/m, 0 where the surface is straight: along, back, across, and back.
+    /// Curvature towards each side, 1/m; zero where the surface is straight.
     pub(super) curvatures: [f32; 4],
-    /// In how many directions the surface is straight: in none, along, or both along and across.
+    /// Number of straight directions: 0; 1, along; or 2, along and across.
     pub(super) straight: u32,
-    /// A bit for each of its sides where the surface ends; and [`ALL_AROUND`](Self::ALL_AROUND).
+    /// Bit per side at which the surface ends, and [`WIRE`](Self::WIRE).
     pub(super) ends: u32,
 }
 
-/// How much the surface of what touches a patch is taken to turn at first, 1/m: a radius of 8 mm.
-const BLUNT: f32 = 125.0;
-/// That the supporter is there is certain up to this part of the extent.
-const CERTAIN: f32 = 0.7;
-/// What touches farther out than this part of the extent touches the patch's rim.
-const RIM: f32 = 0.9;
-
 impl Patch {
-    /// No patch is without any extent, metres.
-    pub(super) const LEAST_EXTENT: f32 = 1e-5;
-    /// The bit of a patch that goes all the way around a wire.
-    pub(super) const ALL_AROUND: u32 = 1 << 4;
+    /// Bit of [`ends`](Self::ends) that marks a wire: the patch is the whole cylinder around it.
+    pub(super) const WIRE: u32 = 1 << 4;
 
-    /// How much the normals turn where an offset leads along and across, 1/m.
+    /// Curvatures along and across, on the sides of an offset, 1/m.
     pub(super) fn curvatures_towards(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         [self.curvatures[usize::from(x < 0.0)], self.curvatures[2 + usize::from(y < 0.0)]]
     }
 
-    /// The unit normal of the patch at an offset along and across: its components along, across, and along the normal at the point.
+    /// Unit normal of the patch at an offset: its components along, across, and along the normal at the
+    /// centre.
     pub(super) fn normal_at(&self, offset: [f32; 2]) -> [f32; 3] {
         let [a, b] = self.curvatures_towards(offset);
         let (x, y) = (a * offset[0], b * offset[1]);
@@ -52,23 +49,25 @@ impl Patch {
         [x * scale, y * scale, 0.0]
     }
 
-    /// The same as a vector.
-    pub(super) fn turned_normal(&self, offset: [f32; 2]) -> Vector {
+    /// Unit normal of the patch at an offset, in supporter coordinates.
+    pub(super) fn normal_vector_at(&self, offset: [f32; 2]) -> Vector {
         let [x, y, z] = self.normal_at(offset);
         self.along * x + self.across() * y + self.normal * z
     }
 
-    /// How far along and across it is from an offset to the place without a slope, for each unit of slope, if what touches is flat there or
-    /// blunt, metres.
-    pub(super) fn strides(&self, offset: [f32; 2]) -> [f32; 2] {
-        self.curvatures_towards(offset).map(|curvature| 1.0 / (curvature.max(0.0) + BLUNT))
+    /// Initial steps of the secant method from an offset, along and across, metres per unit of slope: the
+    /// patch's curvature and an initial guess for that of the touching surface predict where the slope
+    /// vanishes.
+    pub(super) fn initial_strides(&self, offset: [f32; 2]) -> [f32; 2] {
+        self.curvatures_towards(offset).map(|curvature| 1.0 / (curvature.max(0.0) + INITIAL_CURVATURE))
     }
 
-    /// The next offset that is on the patch.
+    /// Nearest offset on the patch. A patch that is straight in both directions is an ellipse, any other a
+    /// rectangle.
     pub(super) fn clamp(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         let [a, b] = self.extents;
         if self.straight == 2 {
-            // Its corners would stick out over a rim that is round.
+            // The corners of a rectangle would stick out over a round rim, as at the end of a bar.
             let (u, v) = (x / a, y / b);
             let scale = 1.0 / libm::sqrtf((u * u + v * v).max(1.0));
             return [x * scale, y * scale];
@@ -76,97 +75,112 @@ impl Patch {
         [x.clamp(-a, a), y.clamp(-b, b)]
     }
 
-    /// How far the place at an offset is below the plane through the point; of a wire, its axis.
+    /// Depth of the surface at an offset below the tangent plane, metres; of a wire, that of its axis.
     pub(super) fn depth(&self, offset: [f32; 2]) -> f32 {
-        if self.is_all_around() {
+        if self.is_wire() {
             return self.wire_radius();
         }
         let [a, b] = self.curvatures_towards(offset);
         sagitta(offset[0], a) + sagitta(offset[1], b)
     }
 
-    /// Unit vectors along, across and out of the patch.
+    /// Unit vectors along, across and normal to the patch.
     pub(super) fn axes(&self) -> [Vector; 3] {
         [self.along, self.across(), self.normal]
     }
 
+    /// Unit tangent in the other principal direction.
     pub(super) fn across(&self) -> Vector {
         self.normal.cross(&self.along)
     }
 
-    /// How far its corners are from its point, metres.
+    /// Distance from the centre to the corners, metres.
     pub(crate) fn reach(&self) -> f32 {
         let [a, b] = self.extents;
-        // The other side of a wire is its diameter away.
-        let b = if self.is_all_around() { 2.0 * b } else { b };
+        // The centre is on the surface of a wire; the other side is one diameter away.
+        let b = if self.is_wire() { 2.0 * b } else { b };
         libm::sqrtf(a * a + b * b)
     }
 
-    /// Steps from its point to the ends of a line along a bar, on the axis of a wire; both are none where it is no bar. What that passes
-    /// through, the supporter passes through, also where it has no points.
-    pub(crate) fn line(&self) -> [Vector; 2] {
+    /// Offsets from the centre to the two ends of a segment along a bar (of a wire, on its axis), in
+    /// supporter coordinates, metres; both are zero if the patch is not that of a bar. Where the segment
+    /// passes through an object, the supporter does, although no point lies there.
+    pub(crate) fn bar_segment(&self) -> [Vector; 2] {
         let inwards = self.normal * self.wire_radius();
-        let length = if self.straight == 1 { CERTAIN * self.extents[0] } else { 0.0 };
+        let length = if self.straight == 1 { BAR_SEGMENT_RATIO * self.extents[0] } else { 0.0 };
         [length, -length].map(|reach| self.along * reach - inwards)
     }
 
-    /// The radius of the wire, metres; 0 if it is none.
+    /// Radius of the wire, metres; 0 if the patch is not that of a wire.
     pub(crate) fn wire_radius(&self) -> f32 {
-        if self.is_all_around() { 1.0 / self.curvatures[2] } else { 0.0 }
+        if self.is_wire() { 1.0 / self.curvatures[2] } else { 0.0 }
     }
 
-    /// Whether it is that of a wire, all around it.
-    pub(crate) fn is_all_around(&self) -> bool {
-        self.ends & Self::ALL_AROUND != 0
+    /// Whether the patch is that of a wire.
+    pub(crate) fn is_wire(&self) -> bool {
+        self.ends & Self::WIRE != 0
     }
 
-    /// The unit vector along which the patch pushes a body that it touches at an offset along and across, and whose surface, seen
-    /// alone, would be pushed along `push`.
+    /// Contact normal: the unit vector along which the patch pushes a body that touches it at an offset.
+    /// `body_normal` is the unit vector along which the body's surface alone would be pushed.
     ///
-    /// Where the patch is straight, and on its rim, it is the patch's own normal: a handle that lies between two points of a bar, and
-    /// leans on the next patch of one, slides along that bar as if there were points in between. Where it is curved both normals agree,
-    /// but for what is not exact: the patch where it is not as round as it was taken to be, the body where it has an edge. Over the
-    /// rim where the surface ends, the body's surface decides.
-    pub(crate) fn push(&self, push: Vector, offset: [f32; 2]) -> Vector {
+    /// Along and across are treated separately. Where the patch is straight, and on its rim, the patch's own
+    /// normal counts: a handle that lies between two points of a bar and touches the rims of both patches
+    /// slides along the bar as if there were points in between. Where the patch is curved, both normals agree
+    /// except for errors, of the patch where its curvature varies and of the body at its edges, and their
+    /// mean counts. Over a rim where the surface ends, the body's normal counts.
+    pub(crate) fn contact_normal(&self, body_normal: Vector, offset: [f32; 2]) -> Vector {
         let across = self.across();
         let own = self.normal_at(offset);
         let is_on_rim = self.is_on_rim(offset);
-        let seen = [push.dot(&self.along), push.dot(&across)];
+        let of_body = [body_normal.dot(&self.along), body_normal.dot(&across)];
         let [along, sideways] =
-            [0, 1].map(|k| self.push_in_direction(k, offset[k], is_on_rim[k], seen[k], own[k]));
+            [0, 1].map(|k| self.normal_component(k, offset[k], is_on_rim[k], of_body[k], own[k]));
         let rest = 1.0 - along * along - sideways * sideways;
-        unit_or(self.normal * libm::sqrtf(rest.max(0.0)) + self.along * along + across * sideways, push)
+        unit_or(
+            self.normal * libm::sqrtf(rest.max(0.0)) + self.along * along + across * sideways,
+            body_normal,
+        )
     }
 
-    /// Whether an offset is on the rim, along and across: of a flat patch, which is an ellipse, both or neither.
+    /// Whether an offset is on the rim, along and across. Of an elliptic patch it is both or neither.
     fn is_on_rim(&self, offset: [f32; 2]) -> [bool; 2] {
         let [x, y] = [0, 1].map(|k| offset[k] / self.extents[k]);
         if self.straight == 2 {
-            return [x * x + y * y > RIM * RIM; 2];
+            return [x * x + y * y > RIM_RATIO * RIM_RATIO; 2];
         }
-        [x, y].map(|part| part.abs() > RIM)
+        [x, y].map(|part| part.abs() > RIM_RATIO)
     }
 
-    /// The component along or across of a push that is `push` by the body's surface and `own` by the patch.
-    fn push_in_direction(&self, direction: usize, offset: f32, is_on_rim: bool, push: f32, own: f32) -> f32 {
+    /// Component of the contact normal along (direction 0) or across (1), where `of_body` is that of the
+    /// body's normal and `own` that of the patch's.
+    fn normal_component(
+        &self,
+        direction: usize,
+        offset: f32,
+        is_on_rim: bool,
+        of_body: f32,
+        own: f32,
+    ) -> f32 {
         let extent = self.extents[direction];
-        if extent <= Self::LEAST_EXTENT {
-            return push;
+        if extent <= MIN_PATCH_EXTENT {
+            return of_body;
         }
         let side = 2 * direction + usize::from(offset < 0.0);
         let is_straight = (direction as u32) < self.straight;
-        let is_over_end = self.ends & 1 << side != 0 && is_on_rim && (push - own) * offset > 0.0;
+        let is_over_end = self.ends & 1 << side != 0 && is_on_rim && (of_body - own) * offset > 0.0;
         if is_over_end {
-            push
+            of_body
         } else if is_straight || is_on_rim {
             own
         } else {
-            0.5 * (own + push)
+            0.5 * (own + of_body)
         }
     }
 }
 
-/// How far a circle of this curvature, 1/m, is below its tangent at this distance from where it touches.
+/// Sagitta: depth of a circle below its tangent at a distance from the tangent point, metres; the curvature
+/// is in 1/m.
 fn sagitta(distance: f32, curvature: f32) -> f32 {
     let turn = curvature * distance;
     turn * distance / (1.0 + libm::sqrtf((1.0 - turn * turn).max(0.0)))

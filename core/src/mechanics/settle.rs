@@ -1,47 +1,44 @@
-//! What becomes of the body when it is let go.
+//! The outcome of a release: rest, fall or continued motion.
 
+use super::constants::{
+    FALL_EXTENT_RATIO, FALL_HEIGHT, FREE_TRAVEL, FREEING_TIME, GRAVITY, REST_WINDOW, ROTATION_OFF_ANGLE,
+    SWING_REST_SPEED, SWING_TIME,
+};
 use super::motion::{Motion, Settings};
 use super::neighbourhood::Sleep;
-use super::{Body, GRAVITY, Support};
+use super::{Body, Support};
 use crate::geometry::{Pose, Vector};
 use crate::monitor::{Meter, Stop};
+use crate::params::Params;
 
-/// How it ends when an object is let go.
+/// Outcome of the release of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fate {
-    /// It rests on the supporter.
+    /// The object rests on the supporter.
     Rests,
-    /// It sank too far and had turned: it rotated off.
+    /// The object fell and had turned: it rotated off.
     RotatesOff,
-    /// It sank too far without turning: it slid off.
+    /// The object fell without turning: it slid off.
     SlidesOff,
-    /// It still moved when time was up.
+    /// The object still moved when the time was up.
     Moves,
 }
 
-/// Where it ended, and how.
+/// Outcome and final pose of a release.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settled {
     pub(crate) fate: Fate,
-    /// Object to supporter.
+    /// Object to supporter coordinates.
     pub(crate) pose: Pose,
 }
 
-/// How far the centre of mass may sink for the object to still be said to hang: DESIGN's 6 cm, or half its extent.
-pub(super) fn most_sinking(body: &Body) -> f32 {
-    0.06_f32.max(0.5 * body.extent)
+/// Drop of the centre of mass beyond which the body has fallen, metres.
+pub(super) fn max_sinking(body: &Body) -> f32 {
+    FALL_HEIGHT.max(FALL_EXTENT_RATIO * body.extent)
 }
 
-/// Steps until it must rest: three seconds.
-const STEPS: usize = 750;
-/// It rests when over so many steps
-const WINDOW: usize = 20;
-/// no point of it moves farther than this, metres.
-const STILL: f32 = 0.0004;
-/// What falls and has turned by more than this, radians, rotated off.
-const TURNED: f32 = 0.7;
-
-/// Lets the body go at `release`; `down` is the unit vector along which things fall.
+/// Releases the body at `release` and simulates it for at most the settle time; `down` is the unit vector of
+/// gravity.
 pub(crate) fn settle(
     (body, support): (&Body, &Support),
     release: &Pose,
@@ -51,65 +48,60 @@ pub(crate) fn settle(
     meter: &mut Meter,
 ) -> Result<Settled, Stop> {
     let mut motion = Motion::new((body, support), body.at(release), settings, sleeps);
-    let fate = follow(&mut motion, body, down, STEPS, meter)?.unwrap_or(Fate::Moves);
+    let steps = settings.steps(settings.settle_time);
+    let fate = simulate(&mut motion, body, down, steps, meter)?.unwrap_or(Fate::Moves);
     Ok(Settled { fate, pose: body.pose(&motion.state) })
 }
 
-/// So many steps a body may swing: four seconds.
-const SWINGING_STEPS: usize = 1000;
-/// Slower than this, metres per second of its centre of mass, it hangs then.
-const SLOW: f32 = 0.05;
-
-/// The same with little of what makes it rest sooner, as it is in truth: it swings out, or falls for that. At last it may still move a little.
+/// Releases the body like [`settle`], but with realistic, low damping, so that it swings out or falls while
+/// swinging. A body that touches and is slow after [`SWING_TIME`] rests, too.
 pub(crate) fn swing_out(
     (body, support): (&Body, &Support),
     release: &Pose,
     down: &Vector,
-    friction: f32,
+    params: &Params,
     sleeps: &mut [Sleep],
     meter: &mut Meter,
 ) -> Result<Settled, Stop> {
-    let settings = Settings::swinging(friction);
+    let settings = Settings::swinging(params);
     let mut motion = Motion::new((body, support), body.at(release), settings, sleeps);
-    let fate = follow(&mut motion, body, down, SWINGING_STEPS, meter)?;
-    let hangs = motion.touches && motion.state.velocity.norm() < SLOW;
+    let fate = simulate(&mut motion, body, down, settings.steps(SWING_TIME), meter)?;
+    let hangs = motion.touches && motion.state.velocity.norm() < SWING_REST_SPEED;
     let fate = fate.unwrap_or(if hangs { Fate::Rests } else { Fate::Moves });
     Ok(Settled { fate, pose: body.pose(&motion.state) })
 }
 
-/// Whether the body comes to rest or falls within so many steps.
-fn follow(
+/// Simulates until the body rests or falls, or returns `None` after `steps`.
+fn simulate(
     motion: &mut Motion,
     body: &Body,
     down: &Vector,
     steps: usize,
     meter: &mut Meter,
 ) -> Result<Option<Fate>, Stop> {
+    let window = motion.settings.steps(REST_WINDOW);
+    let rest_travel = motion.settings.rest_speed * REST_WINDOW;
     let start = motion.state;
-    let mut mark = start;
+    let mut window_start = start;
     for step in 1..=steps {
         motion.step(&(down * GRAVITY), meter)?;
         let state = &motion.state;
-        if down.dot(&(state.centre - start.centre)) > most_sinking(body) {
+        if down.dot(&(state.centre - start.centre)) > max_sinking(body) {
             let turned = start.rotation.angle_to(&state.rotation);
-            return Ok(Some(if turned > TURNED { Fate::RotatesOff } else { Fate::SlidesOff }));
+            return Ok(Some(if turned > ROTATION_OFF_ANGLE { Fate::RotatesOff } else { Fate::SlidesOff }));
         }
-        if step % WINDOW == 0 {
-            if motion.touches && body.travel(&mark, state) < STILL {
+        if step % window == 0 {
+            if motion.touches && body.travel(&window_start, state) < rest_travel {
                 return Ok(Some(Fate::Rests));
             }
-            mark = *state;
+            window_start = *state;
         }
     }
     Ok(None)
 }
 
-/// It comes free when nothing bears on it any more and it has moved this far, metres,
-const FREE: f32 = 0.002;
-/// within so many steps: half a second.
-const FREEING_STEPS: usize = 125;
-
-/// Whether the body comes off when gravity is reversed: what does not is wedged, or was pushed onto the supporter.
+/// Whether the body comes free when gravity is reversed. A body that does not is wedged, or was pushed onto
+/// the supporter.
 pub(crate) fn comes_free(
     (body, support): (&Body, &Support),
     rest: &Pose,
@@ -120,9 +112,9 @@ pub(crate) fn comes_free(
 ) -> Result<bool, Stop> {
     let start = body.at(rest);
     let mut motion = Motion::new((body, support), start, settings, sleeps);
-    for _ in 0..FREEING_STEPS {
+    for _ in 0..settings.steps(FREEING_TIME) {
         motion.step(&(-down * GRAVITY), meter)?;
-        if !motion.touches && (motion.state.centre - start.centre).norm() > FREE {
+        if !motion.touches && (motion.state.centre - start.centre).norm() > FREE_TRAVEL {
             return Ok(true);
         }
     }

@@ -1,38 +1,47 @@
-//! Impulses between the body and the supporter in one time step: projected Gauss-Seidel on velocities, Coulomb's cone.
+//! Contact impulses of one time step: projected Gauss-Seidel on velocities with Coulomb's friction cone.
 
 use super::body::State;
-use super::contact::{Contact, Contacts, MOST};
+use super::constants::{
+    CORRECTION_SWEEPS, MAX_SOLVER_CONTACTS, PENETRATION_CORRECTION, PENETRATION_SLOP, SOLVER_SWEEPS,
+    SOLVER_TOLERANCE,
+};
+use super::contact::{Contact, Contacts};
 use crate::geometry::{Vector, any_perpendicular};
 use heapless::Vec;
 use nalgebra::Matrix3;
 
-/// What a contact did in the last step, to start the next one from.
+/// Impulse of a contact in the last step: the warm start of the next one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Impulse {
+    /// Index of the patch.
     pub(crate) index: u32,
+    /// Impulse along the contact normal, m/s for the unit mass.
     pub(crate) normal: f32,
+    /// Friction impulse in supporter coordinates, m/s for the unit mass.
     pub(crate) friction: Vector,
 }
 
-pub(crate) type Impulses = Vec<Impulse, MOST>;
+pub(crate) type Impulses = Vec<Impulse, MAX_SOLVER_CONTACTS>;
 
+/// The unknowns and coefficients of one contact. Arrays of three are along the normal and the two tangents.
 struct Row {
+    /// Contact point relative to the centre of mass, metres.
     arm: Vector,
     normal: Vector,
     tangents: [Vector; 2],
-    /// Change of spin by a unit impulse along the normal and the tangents.
+    /// Change of the angular velocity by a unit impulse.
     twist: [Vector; 3],
+    /// Effective mass, of the unit mass.
     mass: [f32; 3],
+    /// Least velocity along the normal, m/s: the contact closes exactly its gap.
     bound: f32,
+    /// Accumulated impulse, m/s for the unit mass.
     impulse: [f32; 3],
 }
 
-/// The impulses are gone through so often at most,
-const ITERATIONS: usize = 12;
-/// or until none changes by more than this, metres per second for the unit mass: a fraction of a thousandth of what gravity does in a step.
-const SETTLED: f32 = 1e-5;
-
-/// Changes the velocities so that no contact closes by more than its gap in `dt`, and returns the impulses.
+/// Changes the velocities of `state` so that no contact closes by more than its gap within `dt` seconds, no
+/// contact pulls, and friction stays in Coulomb's cone. Returns the impulses; those of the last step,
+/// `before`, are the warm start.
 pub(crate) fn solve(
     state: &mut State,
     inverse_inertia: &Matrix3<f32>,
@@ -41,7 +50,7 @@ pub(crate) fn solve(
     friction: f32,
     dt: f32,
 ) -> Impulses {
-    let mut rows = Vec::<Row, MOST>::new();
+    let mut rows = Vec::<Row, MAX_SOLVER_CONTACTS>::new();
     for contact in contacts {
         let arm = contact.position - state.centre;
         let normal = contact.normal;
@@ -60,20 +69,20 @@ pub(crate) fn solve(
         }
         let _ = rows.push(Row { arm, normal, tangents, twist, mass, bound, impulse });
     }
-    for _ in 0..ITERATIONS {
-        let mut most_changed = 0.0_f32;
+    for _ in 0..SOLVER_SWEEPS {
+        let mut largest_change = 0.0_f32;
         for row in &mut rows {
             let velocity = state.velocity_at(&row.arm);
-            // Friction first, so that the normal, which must hold, has the last word.
+            // Friction first: the normal condition must hold at the end of the sweep.
             let wanted =
                 [0, 1].map(|k| row.impulse[k + 1] - velocity.dot(&row.tangents[k]) * row.mass[k + 1]);
-            let most = friction * row.impulse[0];
+            let limit = friction * row.impulse[0];
             let length = libm::sqrtf(wanted[0] * wanted[0] + wanted[1] * wanted[1]);
-            let scale = if length > most { most / length } else { 1.0 };
+            let scale = if length > limit { limit / length } else { 1.0 };
             for (k, wanted) in wanted.into_iter().enumerate() {
                 let change = wanted * scale - row.impulse[k + 1];
                 row.impulse[k + 1] += change;
-                most_changed = most_changed.max(change.abs());
+                largest_change = largest_change.max(change.abs());
                 state.velocity += row.tangents[k] * change;
                 state.spin += row.twist[k + 1] * change;
             }
@@ -81,11 +90,11 @@ pub(crate) fn solve(
             let wanted = row.impulse[0] + (row.bound - velocity.dot(&row.normal)) * row.mass[0];
             let change = wanted.max(0.0) - row.impulse[0];
             row.impulse[0] += change;
-            most_changed = most_changed.max(change.abs());
+            largest_change = largest_change.max(change.abs());
             state.velocity += row.normal * change;
             state.spin += row.twist[0] * change;
         }
-        if most_changed < SETTLED {
+        if largest_change < SOLVER_TOLERANCE {
             break;
         }
     }
@@ -100,12 +109,9 @@ pub(crate) fn solve(
         .collect()
 }
 
-/// Penetration that is left alone, metres, so that contacts do not come and go.
-const SLOP: f32 = 1e-4;
-/// The share of the rest that is taken away in a step.
-const SHARE: f32 = 0.3;
-
-/// The displacement and the rotation vector that bring the body out of what it penetrates.
+/// Returns the displacement, metres, and the rotation vector, radians, that correct a fraction of the
+/// penetration: they move every gap towards at least `target` metres, less the slop. Velocities do not
+/// change.
 pub(crate) fn separate(
     state: &State,
     inverse_inertia: &Matrix3<f32>,
@@ -113,10 +119,10 @@ pub(crate) fn separate(
     target: f32,
 ) -> (Vector, Vector) {
     let (mut shift, mut turn) = (Vector::zeros(), Vector::zeros());
-    let mut pushes = [0.0_f32; MOST];
-    for _ in 0..4 {
+    let mut pushes = [0.0_f32; MAX_SOLVER_CONTACTS];
+    for _ in 0..CORRECTION_SWEEPS {
         for (contact, push) in contacts.iter().zip(&mut pushes) {
-            let missing = (target - SLOP - contact.gap) * SHARE;
+            let missing = (target - PENETRATION_SLOP - contact.gap) * PENETRATION_CORRECTION;
             if missing <= 0.0 && *push == 0.0 {
                 continue;
             }

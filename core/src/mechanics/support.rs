@@ -1,5 +1,6 @@
-//! The supporter as mechanics sees it: points that stand for patches of its surface.
+//! The supporter in the simulation: surface patches at representative points of its cloud.
 
+use super::constants::{GROUP_SIZE, REPRESENTATIVE_COSINE, REPRESENTATIVE_SPACING, SPACING_PROBES};
 use super::fit::fit_patch;
 use super::patch::Patch;
 use crate::geometry::{Aabb, Neighbour, Point, PointTree, Vector};
@@ -7,40 +8,41 @@ use crate::memory::{Arena, OutOfMemory, array_bytes};
 use bytemuck::{Pod, Zeroable};
 use core::ops::Range;
 
-/// A supporter that stands still, in its own coordinates.
+/// A fixed supporter, in its own coordinates.
 #[derive(Clone, Copy)]
 pub(crate) struct Support<'a> {
+    /// All points of the cloud.
     pub(crate) tree: PointTree<'a>,
-    /// What the points stand for, of those that no other stands for, in tree order,
+    /// Patches of the representatives, in tree order.
     pub(crate) patches: &'a [Patch],
-    /// and which these are.
+    /// Indices of the representatives in the tree, ascending; one per patch.
     pub(crate) representatives: &'a [u32],
+    /// Groups of consecutive patches, which cover all patches.
     pub(crate) groups: &'a [Group],
-    /// How far a patch reaches from its point at most, metres.
+    /// Largest distance from the point of a patch to the patch's corners, metres.
     pub(crate) reach: f32,
 }
 
-/// Some patches, close to each other.
+/// Consecutive patches, close to each other, with a bounding sphere.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Group {
     first: u32,
     count: u32,
+    /// Centre of the bounding sphere, supporter coordinates, metres.
     pub(crate) centre: Point,
-    /// What holds all of them, metres.
+    /// Radius of the bounding sphere, metres.
     pub(crate) radius: f32,
 }
 
 impl Group {
-    /// So many make a group, at most.
-    const MOST: usize = 8;
-
+    /// Indices of the patches.
     pub(crate) fn patches(&self) -> Range<usize> {
         self.first as usize..(self.first + self.count) as usize
     }
 }
 
-/// Memory for the patches of a supporter.
+/// Memory for the patches and groups of a supporter.
 pub(crate) struct Room<'a> {
     patches: &'a mut [Patch],
     representatives: &'a mut [u32],
@@ -48,60 +50,56 @@ pub(crate) struct Room<'a> {
 }
 
 impl<'a> Room<'a> {
-    /// Bytes for the patches of so many points.
+    /// Bytes of memory for a cloud of `points` points.
     pub(crate) const fn bytes(points: usize) -> usize {
         array_bytes::<Patch>(points).saturating_add(array_bytes::<u32>(points)).saturating_add(array_bytes::<
             Group,
         >(
-            Support::most_groups(points),
+            Support::max_groups(points),
         ))
     }
 
-    /// For so many points.
+    /// Allocates memory for a cloud of `points` points.
     pub(crate) fn new(points: usize, arena: &mut Arena<'a>) -> Result<Self, OutOfMemory> {
         Ok(Self {
             patches: arena.slice(points)?,
             representatives: arena.slice(points)?,
-            groups: arena.slice(Support::most_groups(points))?,
+            groups: arena.slice(Support::max_groups(points))?,
         })
     }
 }
 
 impl<'a> Support<'a> {
-    /// How many things may sleep where there are so many points.
+    /// Maximum number of patches and groups of a cloud of `points` points: the length of the working memory
+    /// of [`Sleep`](super::Sleep).
     pub(crate) const fn sleepers(points: usize) -> usize {
-        points + Self::most_groups(points)
+        points + Self::max_groups(points)
     }
 
-    const fn most_groups(points: usize) -> usize {
-        points.div_ceil(Group::MOST)
+    const fn max_groups(points: usize) -> usize {
+        points.div_ceil(GROUP_SIZE)
     }
 
-    /// Where a patch is.
-    pub(crate) fn place(&self, patch: usize) -> Point {
+    /// Position of a patch, supporter coordinates, metres.
+    pub(crate) fn position(&self, patch: usize) -> Point {
         self.tree.points()[self.representatives[patch] as usize]
     }
 
-    /// Where all of them are.
-    pub(crate) fn places(&self) -> impl Iterator<Item = Point> + 'a {
+    /// Positions of all patches, supporter coordinates, metres.
+    pub(crate) fn positions(&self) -> impl Iterator<Item = Point> + 'a {
         let points = self.tree.points();
         self.representatives.iter().map(move |&index| points[index as usize])
     }
 
-    /// The patches of some points.
+    /// Indices of the patches at a range of points of the tree.
     pub(crate) fn patches_of(&self, points: &Range<usize>) -> Range<usize> {
         let before = |limit: usize| self.representatives.partition_point(|&index| (index as usize) < limit);
         before(points.start)..before(points.end)
     }
 }
 
-/// Points closer than this to one that looks the same way add nothing to where things rest, metres.
-const REPRESENTATIVES_APART: f32 = 0.0025;
-/// ... that is, whose normals have this cosine: about 25 degrees.
-const SAME_WAY: f32 = 0.9;
-
 impl<'a> Support<'a> {
-    /// Without patches: nothing can touch it.
+    /// A supporter without patches: no object can touch it.
     pub(crate) fn bare(tree: PointTree<'a>) -> Self {
         Self { tree, patches: &[], representatives: &[], groups: &[], reach: 0.0 }
     }
@@ -111,7 +109,8 @@ impl<'a> Support<'a> {
         array_bytes::<u8>(points)
     }
 
-    /// Chooses points so that every other has one near it that looks the same way, and fits their patches. `normals` are in tree order.
+    /// Chooses representatives and fits their patches. Every other point has a representative within
+    /// [`REPRESENTATIVE_SPACING`] whose normal is similar. `normals` are in tree order.
     pub(crate) fn fit(
         tree: PointTree<'a>,
         normals: &[Vector],
@@ -121,15 +120,15 @@ impl<'a> Support<'a> {
         let (points, Room { patches, representatives, groups }) = (tree.points(), room);
         let is_covered = scratch.slice::<u8>(points.len())?;
         let spacing = spacing(&tree);
-        let apart = spacing.max(REPRESENTATIVES_APART);
+        let apart = spacing.max(REPRESENTATIVE_SPACING);
         let mut count = 0;
         for index in 0..points.len() {
             if is_covered[index] > 0 {
                 continue;
             }
-            tree.for_each_within(&points[index], REPRESENTATIVES_APART, |neighbour| {
+            tree.for_each_within(&points[index], REPRESENTATIVE_SPACING, |neighbour| {
                 let other = neighbour.index as usize;
-                if normals[other].dot(&normals[index]) > SAME_WAY {
+                if normals[other].dot(&normals[index]) > REPRESENTATIVE_COSINE {
                     is_covered[other] = 1;
                 }
             });
@@ -138,30 +137,31 @@ impl<'a> Support<'a> {
             count += 1;
         }
         let (patches, representatives) = (&patches[..count], &representatives[..count]);
-        let groups = &mut groups[..count.div_ceil(Group::MOST)];
-        let members = patches.chunks(Group::MOST).zip(representatives.chunks(Group::MOST));
+        let groups = &mut groups[..count.div_ceil(GROUP_SIZE)];
+        let members = patches.chunks(GROUP_SIZE).zip(representatives.chunks(GROUP_SIZE));
         for (k, (group, (patches, representatives))) in groups.iter_mut().zip(members).enumerate() {
             let places = || representatives.iter().map(|&index| &points[index as usize]);
             let centre = Aabb::of(places()).centre();
             let reach = |(place, patch): (&Point, &Patch)| (place - centre).norm() + patch.reach();
             let radius = places().zip(patches).map(reach).fold(0.0, f32::max);
-            *group = Group { first: (k * Group::MOST) as u32, count: patches.len() as u32, centre, radius };
+            *group = Group { first: (k * GROUP_SIZE) as u32, count: patches.len() as u32, centre, radius };
         }
         let reach = patches.iter().map(Patch::reach).fold(0.0, f32::max);
         Ok(Self { tree, patches, representatives, groups, reach })
     }
 }
 
-/// The distance at which points have their fourth neighbour, as the median of some, metres.
+/// Spacing of the cloud, metres: the median distance from a point to its fourth neighbour, over some of the
+/// points.
 fn spacing(tree: &PointTree) -> f32 {
-    const PROBES: usize = 64;
     let points = tree.points();
-    let mut distances = [0.0; PROBES];
+    let mut distances = [0.0; SPACING_PROBES];
     for (k, distance) in distances.iter_mut().enumerate() {
+        // The nearest point found is the point itself.
         let mut found = [Neighbour::default(); 5];
-        let found = tree.k_nearest(&points[k * points.len() / PROBES], &mut found);
+        let found = tree.k_nearest(&points[k * points.len() / SPACING_PROBES], &mut found);
         *distance = found.last().map_or(0.0, |neighbour| libm::sqrtf(neighbour.distance_squared));
     }
     distances.sort_unstable_by(f32::total_cmp);
-    distances[PROBES / 2]
+    distances[SPACING_PROBES / 2]
 }

@@ -1,14 +1,15 @@
-//! Rests, falls and margins with known answers: `docs/MECHANICS.md` derives them.
+//! Rest poses, falls and margins with known answers, which `docs/MECHANICS.md` derives.
 
 use super::body::State;
 use super::contact::{Contact, Contacts};
-use super::motion::{Motion, TIME_STEP};
+use super::motion::Motion;
 use super::neighbourhood::Neighbourhood;
 use super::patch::Patch;
 use super::*;
 use crate::geometry::{DistanceField, MassProperties, Point, PointTree, Pose, Surface, Vector};
 use crate::memory::{Arena, model_bytes};
 use crate::monitor::{Meter, Monitor};
+use crate::params::Params;
 use crate::random::Random;
 use crate::test_shapes::{self, Shape};
 use nalgebra::{Translation3, UnitQuaternion};
@@ -17,13 +18,13 @@ use std::vec::Vec;
 /// Points with normals.
 type Cloud = (Vec<[f32; 3]>, Vec<[f32; 3]>);
 
-/// An object beside a supporter.
+/// An object and the cloud of a supporter.
 struct Scene {
     object: Shape,
     cloud: Cloud,
 }
 
-/// A scene in motion.
+/// A scene with its body and support built.
 struct Lab<'a> {
     body: Body<'a>,
     support: Support<'a>,
@@ -77,22 +78,31 @@ impl Scene {
 const DOWN: Vector = Vector::new(0.0, 0.0, -1.0);
 const FRICTION: f32 = 0.4;
 
-/// Down, turned by an angle towards a horizontal direction.
+fn with_friction(friction: f32) -> Params {
+    Params { friction, ..Params::default() }
+}
+
+/// The downward direction, turned by an angle towards a horizontal direction.
 fn tilted(degrees: f32, towards: Vector) -> Vector {
     let (sin, cos) = degrees.to_radians().sin_cos();
     DOWN * cos + towards * sin
 }
 
 impl Lab<'_> {
-    /// Lets the body go at `pose`.
+    /// Releases the body at `pose`.
     fn settle(&mut self, pose: &Pose, friction: f32) -> (Fate, Pose) {
+        self.settle_with(pose, &DOWN, &with_friction(friction))
+    }
+
+    /// Releases the body at `pose` with gravity along `down`.
+    fn settle_with(&mut self, pose: &Pose, down: &Vector, params: &Params) -> (Fate, Pose) {
         let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
-        let (settings, mut meter) = (Settings::damped(friction), Meter::new(&monitor));
-        let settled = settle(scene, pose, &DOWN, settings, &mut self.sleeps, &mut meter).unwrap();
+        let (settings, mut meter) = (Settings::damped(params), Meter::new(&monitor));
+        let settled = settle(scene, pose, down, settings, &mut self.sleeps, &mut meter).unwrap();
         (settled.fate, settled.pose)
     }
 
-    /// Where it comes to rest.
+    /// Releases the body at `pose` and returns its rest pose.
     #[track_caller]
     fn rest(&mut self, pose: &Pose, friction: f32) -> Pose {
         let (fate, pose) = self.settle(pose, friction);
@@ -100,7 +110,7 @@ impl Lab<'_> {
         pose
     }
 
-    /// Watches it move from rest at `pose` while things fall along `down`; after each step.
+    /// Simulates the body from rest at `pose` with gravity along `down`, and calls `see` after each step.
     fn watch(
         &mut self,
         (pose, down): (&Pose, &Vector),
@@ -111,22 +121,23 @@ impl Lab<'_> {
         let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
         let mut meter = Meter::new(&monitor);
         let mut motion = Motion::new(scene, self.body.at(pose), settings, &mut self.sleeps);
-        for _ in 0..(seconds / TIME_STEP) as usize {
+        for _ in 0..settings.steps(seconds) {
             motion.step(&(down * GRAVITY), &mut meter).unwrap();
             see(&self.body, &motion.state);
         }
         motion.state
     }
 
-    /// How far its centre of mass gets in half a second of gravity along `down`.
+    /// Displacement of the centre of mass in half a second of gravity along `down`.
     fn drift(&mut self, pose: &Pose, down: &Vector, friction: f32) -> Vector {
-        let end = self.watch((pose, down), Settings::damped(friction), 0.5, |_, _| {});
+        let end = self.watch((pose, down), Settings::damped(&with_friction(friction)), 0.5, |_, _| {});
         end.centre - pose * self.body.centre
     }
 
     fn firmness(&mut self, rest: &Pose) -> margin::Firmness {
         let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
-        firmness(scene, rest, &DOWN, FRICTION, 0.0, &mut self.sleeps, &mut Meter::new(&monitor)).unwrap()
+        firmness(scene, rest, &DOWN, &Params::default(), 0.0, &mut self.sleeps, &mut Meter::new(&monitor))
+            .unwrap()
     }
 
     fn is_clear(&self, pose: &Pose, clearance: f32) -> bool {
@@ -144,7 +155,7 @@ fn at(x: f32, y: f32, z: f32) -> Pose {
     Pose::translation(x, y, z)
 }
 
-/// A rectangle of points around the origin, about 1.2 mm apart, spread by the golden ratio's sister in the plane (Roberts 2018).
+/// A rectangle of points around the origin, about 1.2 mm apart: the quasi-random sequence R2 (Roberts 2018).
 fn plane(width: f32, depth: f32, place: impl Fn(Point) -> Point) -> Cloud {
     let count = (width * depth / 0.0012_f32.powi(2)) as usize;
     let at = |u: f32, v: f32| place(Point::new(width * (u - 0.5), depth * (v - 0.5), 0.0));
@@ -160,9 +171,9 @@ fn together(parts: impl IntoIterator<Item = Cloud>) -> Cloud {
     parts.into_iter().reduce(|(p, n), (q, m)| ([p, q].concat(), [n, m].concat())).unwrap()
 }
 
-/// The radii of a ring's centre line and its wire.
+/// Radii of the ring's centre line and of its wire, metres.
 const RING: [f32; 2] = [0.030, 0.004];
-/// How far the ring's centre hangs below the axis of a rod of this radius.
+/// Depth of the hanging ring's centre below the axis of a rod of this radius, metres.
 fn hang(rod: f32) -> f32 {
     RING[0] - RING[1] - rod
 }
@@ -177,7 +188,7 @@ fn rod(along: Vector, length: f32, radius: f32) -> Cloud {
     test_shapes::peg(Point::from(-half), Point::from(half), radius, 0.0012)
 }
 
-/// A ring on a rod of 5 mm: its axis along x, its inside just above the rod.
+/// Pose of a ring just above a rod of radius 5 mm along x, with the ring's axis along x.
 fn on_rod() -> Pose {
     Pose::from_parts(Translation3::new(0.0, 0.0, -hang(0.005) + 0.001), turned(Vector::y(), 90.0))
 }
@@ -185,10 +196,10 @@ fn on_rod() -> Pose {
 #[test]
 fn a_ring_hangs_straight_below_the_rod() {
     Scene::new(ring(), rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
-        // Let go beside the rod's middle, turned a little about the rod and the vertical.
+        // Released beside the middle of the rod.
         let release = at(0.01, 0.004, 0.0) * on_rod();
         assert!(lab.is_clear(&release, 0.0));
-        // With friction it may stay anywhere on the rod's top: then straight below where it bears.
+        // With friction it may rest anywhere on the rod's top, with its centre straight below the contacts.
         let rest = lab.rest(&release, FRICTION);
         let centre = rest * Point::origin();
         assert!(centre.x.hypot(centre.y) < 0.02, "{centre}");
@@ -199,7 +210,7 @@ fn a_ring_hangs_straight_below_the_rod() {
             contacts.iter().map(|contact| contact.force * contact.position.y).sum::<f32>() / borne;
         assert!((centre.y - bears).abs() < 0.0005, "not below its contacts: {centre}, {bears}");
         assert!(bears.abs() < 0.005 * FRICTION.atan().sin(), "steeper than friction holds: {bears}");
-        // Without friction, and left alone for long enough, straight below the rod.
+        // Without friction, after a long time, its centre is straight below the rod.
         let mut still = release;
         for _ in 0..8 {
             still = lab.rest(&still, 0.0);
@@ -209,7 +220,7 @@ fn a_ring_hangs_straight_below_the_rod() {
     });
 }
 
-/// The place of a patch that is next to a step from its point: its offset along and across, and the step there.
+/// The point of a patch nearest to a step from its centre: its offset along and across, and the step to it.
 fn next_to(patch: &Patch, step: Vector) -> ([f32; 2], Vector) {
     let [along, across, normal] = patch.axes();
     let offset = patch.clamp([step.dot(&along), step.dot(&across)]);
@@ -217,33 +228,35 @@ fn next_to(patch: &Patch, step: Vector) -> ([f32; 2], Vector) {
 }
 
 #[test]
-fn a_patch_knows_the_bar_and_its_end() {
-    // A rod of 5 mm along x, on which gravity is across the middle and beyond its end.
+fn patches_follow_a_bar_and_end_with_it() {
+    // A rod of radius 5 mm along x.
     Scene::new(ring(), rod(Vector::x(), 0.06, 0.005)).try_out(|lab| {
         let support = &lab.support;
         let of_bar = |x: [f32; 2]| {
             let between =
                 move |point: &Point| (x[0]..x[1]).contains(&point.x) && point.y.hypot(point.z) > 0.0045;
-            support.places().zip(support.patches).filter(move |(point, _)| between(point))
+            support.positions().zip(support.patches).filter(move |(point, _)| between(point))
         };
         assert!(of_bar([-0.02, 0.02]).count() > 50);
         for (point, patch) in of_bar([-0.02, 0.02]) {
             let outward = Vector::new(0.0, point.y, point.z).normalize();
-            // What leans along the bar is pushed straight out of it, and what leans across is not.
+            // A body that leans along the bar is pushed perpendicularly to it.
             let lean = (outward + Vector::x() * 0.8).normalize();
-            let pushed = patch.push(lean, next_to(patch, Vector::x() * 0.002).0);
+            let pushed = patch.contact_normal(lean, next_to(patch, Vector::x() * 0.002).0);
             assert!((pushed - outward).norm() < 0.1, "{pushed} at {point}");
-            // Its rim lies on the rod, not on a plane: 2 mm aside that is 0.4 mm higher.
+            // The rim of the patch lies on the rod, not on the tangent plane, which is 0.4 mm higher at 2 mm.
             let (offset, step) = next_to(patch, outward.cross(&Vector::x()) * 0.002);
             let aside = (point + step).coords.yz();
             assert!((aside.norm() - 0.005).abs() < 0.00015, "{aside} at {point}");
-            // And there it pushes away from the rod's axis.
+            // There it pushes away from the rod's axis.
             let away = Vector::new(0.0, aside.x, aside.y).normalize();
-            let pushed = patch.push(away, offset);
+            let pushed = patch.contact_normal(away, offset);
             assert!((pushed - away).norm() < 0.05, "{pushed} instead of {away} at {point}");
         }
-        // What stands for its flat ends does not stick out over their rims by a millimetre, as corners would.
-        let ends = support.places().zip(support.patches).filter(|(_, patch)| patch.axes()[2].x.abs() > 0.9);
+        // The patches of the flat ends do not stick out over their rims by a millimetre, as the corners of
+        // rectangles would.
+        let ends =
+            support.positions().zip(support.patches).filter(|(_, patch)| patch.axes()[2].x.abs() > 0.9);
         for (point, patch) in ends {
             for k in 0..16 {
                 let (sin, cos) = (core::f32::consts::TAU * k as f32 / 16.0).sin_cos();
@@ -251,11 +264,11 @@ fn a_patch_knows_the_bar_and_its_end() {
                 assert!(place.y.hypot(place.z) < 0.0058, "{place} of the patch at {point}");
             }
         }
-        // At the very end what leans outwards is pushed off.
+        // At the very end a body that leans outwards is pushed outwards.
         let lean = |point: &Point| (Vector::new(0.0, point.y, point.z).normalize() + Vector::x()).normalize();
         let pushed_off = of_bar([0.0285, 0.0301]).filter(|(point, patch)| {
             let (offset, _) = next_to(patch, Vector::x() * 0.002);
-            (patch.push(lean(point), offset) - lean(point)).norm() < 0.1
+            (patch.contact_normal(lean(point), offset) - lean(point)).norm() < 0.1
         });
         let all = of_bar([0.0285, 0.0301]).count();
         assert!(all > 5 && pushed_off.count() > 3 * all / 4, "{all}");
@@ -263,8 +276,8 @@ fn a_patch_knows_the_bar_and_its_end() {
 }
 
 #[test]
-fn what_sleeps_is_not_missed() {
-    // A ring on a rod, pushed and turned about at random around where it rests, and farther and farther off it.
+fn contacts_of_sleeping_patches_are_not_missed() {
+    // A ring on a rod, displaced and rotated at random around its rest pose.
     Scene::new(ring(), rod(Vector::x(), 0.06, 0.004)).try_out(|lab| {
         let scene = (&lab.body, &lab.support);
         let (monitor, mut random) = (Monitor::new(), Random::new(8));
@@ -275,7 +288,7 @@ fn what_sleeps_is_not_missed() {
         let mut contacts = Contacts::new();
         let mut found = 0;
         for step in 0..4000 {
-            neighbourhood.carry_no_more();
+            neighbourhood.force_search();
             neighbourhood.update(&mut contacts, scene, &state, (0.001, 0.0), &mut meter).unwrap();
             let (mut all, mut anew) = (Contacts::new(), Neighbourhood::new(&mut awake));
             anew.update(&mut all, scene, &state, (0.001, 0.0), &mut meter).unwrap();
@@ -287,7 +300,7 @@ fn what_sleeps_is_not_missed() {
             let mut vector = |size: f32| Vector::from([(); 3].map(|()| (random.next_f32() - 0.5) * size));
             let back = (on_rod() * lab.body.centre - state.centre) * 0.02;
             let (shift, turn) = (vector(0.0008) + back, vector(0.02));
-            neighbourhood.moves(&state, &shift, &turn);
+            neighbourhood.record_motion(&state, &shift, &turn);
             state.advance(&shift, &turn);
         }
         assert!(found > 4000, "{found}");
@@ -296,7 +309,8 @@ fn what_sleeps_is_not_missed() {
 
 #[test]
 fn contacts_are_on_the_surface_where_the_field_is_not() {
-    // A ball inside a pipe of 3 mm, whose voxels are not much finer: what is between its faces the field knows badly.
+    // A ball inside a pipe with a wall of 3 mm. The voxels are not much finer, so the field is inexact inside
+    // the wall.
     let (inner, outer, radius) = (0.09, 0.093, 0.006);
     let points = (0..400).map(|i| {
         let (z, around) = (1.0 - (i as f32 + 0.5) / 200.0, i as f32 * 2.399_963);
@@ -333,8 +347,9 @@ fn contacts_are_on_the_surface_where_the_field_is_not() {
 }
 
 #[test]
-fn the_corner_of_a_plate_pushes_as_what_lies_on_it_leans() {
-    // What leans over the corner of a flat patch that ends ahead and to the left is not held by the plane that the patch is.
+fn the_corner_of_a_plate_pushes_along_the_normal_of_the_body() {
+    // A body that leans over the corner of a flat patch, which ends along and across, is pushed along its own
+    // normal.
     let patch = Patch {
         normal: Vector::z(),
         along: Vector::x(),
@@ -344,16 +359,17 @@ fn the_corner_of_a_plate_pushes_as_what_lies_on_it_leans() {
         ends: 1 | 1 << 2,
     };
     let lean = Vector::new(0.3, 0.3, 0.9).normalize();
-    assert!((patch.push(lean, [0.0014, 0.0014]) - lean).norm() < 1e-3);
-    // In the middle of it, and where the surface goes on, it is.
-    assert!((patch.push(lean, [0.0, 0.0]) - Vector::z()).norm() < 1e-6);
-    assert!((patch.push(lean, [-0.0014, -0.0014]) - Vector::z()).norm() < 1e-6);
+    assert!((patch.contact_normal(lean, [0.0014, 0.0014]) - lean).norm() < 1e-3);
+    // In the middle of the patch, and where the surface goes on, it is pushed along the patch's.
+    assert!((patch.contact_normal(lean, [0.0, 0.0]) - Vector::z()).norm() < 1e-6);
+    assert!((patch.contact_normal(lean, [-0.0014, -0.0014]) - Vector::z()).norm() < 1e-6);
 }
 
 #[test]
-fn a_bar_with_a_round_end_is_known_from_few_points() {
-    // Radius 4 mm along x from -60 mm to where it ends in half a ball, seen at points 3 mm apart. A ball has as much surface for each
-    // millimetre of height as the cylinder around it (Archimedes), and the golden angle spreads the points around.
+fn a_bar_with_a_round_end_is_fitted_to_few_points() {
+    // A bar of radius 4 mm along x from -60 mm to 0, where it ends in half a ball, with points 3 mm apart. A
+    // ball has as much surface per millimetre of height as the cylinder around it (Archimedes), and the
+    // golden angle spreads the points around the axis.
     const RADIUS: f32 = 0.004;
     const COUNT: i32 = 180;
     let normal_at = |i: i32| {
@@ -368,7 +384,7 @@ fn a_bar_with_a_round_end_is_known_from_few_points() {
     });
     let cloud = (points.collect(), (0..COUNT).map(|i| normal_at(i).into()).collect());
     Scene::new(ring(), cloud).try_out(|lab| {
-        let patches = lab.support.places().zip(lab.support.patches);
+        let patches = lab.support.positions().zip(lab.support.patches);
         for (point, patch) in patches.filter(|(point, _)| point.x > -0.05) {
             for side in [Vector::x(), -Vector::x(), Vector::y(), -Vector::y(), Vector::z(), -Vector::z()] {
                 let (offset, step) = next_to(patch, side * 0.01);
@@ -378,10 +394,10 @@ fn a_bar_with_a_round_end_is_known_from_few_points() {
                     (off.norm() - RADIUS).abs() < 0.0006,
                     "{place} is on the rim of the patch at {point}"
                 );
-                // It goes on beyond the patch, so that nothing is pushed along it.
+                // The bar goes on beyond the patch, so the patch does not push along it.
                 if point.x < -0.008 {
                     let lean = (off.normalize() + side.x * Vector::x()).normalize();
-                    assert!(patch.push(lean, offset).x.abs() < 0.1, "along the bar at {place}");
+                    assert!(patch.contact_normal(lean, offset).x.abs() < 0.1, "along the bar at {place}");
                 }
             }
         }
@@ -389,9 +405,9 @@ fn a_bar_with_a_round_end_is_known_from_few_points() {
 }
 
 #[test]
-fn a_bar_through_a_sheet_is_seen_between_its_points() {
-    // A bar of 3 mm along x, seen in rings of points 4 mm apart; the sheet, of a fifth of a millimetre, is
-    // square to it, halfway between two rings.
+fn a_bar_through_a_sheet_is_detected_between_its_points() {
+    // A bar of radius 3 mm along x with points in rings 4 mm apart, and a sheet of 0.2 mm perpendicular to
+    // it, halfway between two rings.
     let normal_at = |k: usize| {
         let (sin, cos) = (core::f32::consts::TAU * (k % 8) as f32 / 8.0 + 0.4 * (k / 8 % 2) as f32).sin_cos();
         Vector::new(0.0, sin, cos)
@@ -412,14 +428,15 @@ fn a_bar_through_a_sheet_is_seen_between_its_points() {
 }
 
 #[test]
-fn a_wire_is_known_by_the_line_of_its_points() {
-    // A wire of 1 mm along x, seen at a point every 6 mm, each on another side of it; the ring's own wire has 2 mm.
+fn a_wire_is_fitted_to_the_line_of_its_points() {
+    // A wire of radius 1 mm along x with a point every 6 mm, each on another side; the wire of the ring has a
+    // radius of 2 mm.
     let around = |k: i32| (2.4 * k as f32).sin_cos();
     let points = (-24..=24).map(|k| [0.006 * k as f32, 0.001 * around(k).0, 0.001 * around(k).1]);
     let normals = (-24..=24).map(|k| [0.0, around(k).0, around(k).1]);
     let thin_ring = test_shapes::torus(0.030, 0.002, 72, 24);
     Scene::new(thin_ring, (points.collect(), normals.collect())).try_out(|lab| {
-        let middle = lab.support.places().zip(lab.support.patches).filter(|(p, _)| p.x.abs() < 0.1);
+        let middle = lab.support.positions().zip(lab.support.patches).filter(|(p, _)| p.x.abs() < 0.1);
         for (point, patch) in middle {
             assert!(patch.extents[0] > 0.003, "as far as to the next points");
             for part in [-1.0, 0.0, 1.0] {
@@ -429,7 +446,8 @@ fn a_wire_is_known_by_the_line_of_its_points() {
             }
             assert!((patch.wire_radius() - 0.001).abs() < 0.0002, "{}", patch.wire_radius());
         }
-        // Its axis along x, between two points of the wire: there it hangs, and the wire does not go through it.
+        // The ring's axis is along x, between two points of the wire: it hangs there, and the wire does not
+        // pass through it.
         let upright = |z: f32| Pose::from_parts(Translation3::new(0.003, 0.0, z), turned(Vector::y(), 90.0));
         let top = 0.030 - 0.002 - 0.001;
         let height = lab.rest(&upright(-top + 0.001), FRICTION) * lab.body.centre;
@@ -444,8 +462,8 @@ fn a_wire_is_known_by_the_line_of_its_points() {
 fn a_ring_slides_along_the_rod_beyond_the_friction_angle() {
     Scene::new(ring(), rod(Vector::x(), 0.3, 0.005)).try_out(|lab| {
         let rest = lab.rest(&on_rod(), FRICTION);
-        // The friction angle is 21.8 degrees. The ring swings about its contact to hang along gravity; what it goes farther,
-        // it slides.
+        // The friction angle is 21.8 degrees. The ring swings about its contact to hang along gravity; any
+        // further displacement is a slide.
         for (degrees, slides) in [(10.0_f32, false), (17.0, false), (28.0, true), (35.0, true)] {
             for side in [Vector::x(), -Vector::x()] {
                 let drift = lab.drift(&rest, &tilted(degrees, side), FRICTION).dot(&side);
@@ -467,7 +485,8 @@ fn a_rod_lies_at_the_bottom_of_a_v() {
         for (y, z) in [(0.0, 0.010), (0.01, 0.022), (-0.015, 0.025)] {
             let rest = lab.rest(&at(0.0, y, z), FRICTION);
             let centre = rest * Point::origin();
-            // Two walls at a right angle touch a circle the square root of two of its radius below its middle.
+            // The corner of two walls at a right angle is sqrt(2) radii below the centre of a circle that
+            // touches both.
             assert!(centre.y.abs() < 0.0005, "{centre}");
             assert!((centre.z - 0.005 * 2_f32.sqrt()).abs() < 0.0005, "{centre}");
             let axis = rest * Vector::x();
@@ -476,7 +495,7 @@ fn a_rod_lies_at_the_bottom_of_a_v() {
     });
 }
 
-/// A plate with its lower edges cut off in front and behind, along x, so that they catch on nothing.
+/// A plate with bevelled lower edges in front and behind, along x, so that they do not catch.
 fn sled() -> Shape {
     let outline =
         [[-0.015, -0.005], [0.015, -0.005], [0.02, 0.0], [0.02, 0.005], [-0.02, 0.005], [-0.02, 0.0]];
@@ -495,11 +514,11 @@ fn a_plate_on_a_slope_slides_beyond_the_friction_angle() {
             Scene::new(plate.clone(), slope).try_out(|lab| {
                 let start = Pose::from_parts(Translation3::identity(), turn) * at(0.0, 0.0, 0.0052);
                 let gone = lab.drift(&start, &DOWN, friction).dot(&(turn * Vector::x()));
-                // Against the drag of 2/s: v' = g (sin - mu cos) - 2 v, for half a second.
+                // With a damping rate of 2/s: v' = g (sin - mu cos) - 2 v, for half a second.
                 let (sin, cos) = degrees.to_radians().sin_cos();
                 let pull = GRAVITY * (sin - friction * cos).max(0.0);
                 let expected = pull / 2.0 * (0.5 - (1.0 - (-1.0_f32).exp()) / 2.0);
-                // Points of the plane that are just ahead hold it up a little.
+                // Patches just ahead of the plate slow it a little.
                 let least = 0.5 * expected - 0.0005;
                 assert!(
                     (least..expected + 0.0005).contains(&gone),
@@ -510,7 +529,7 @@ fn a_plate_on_a_slope_slides_beyond_the_friction_angle() {
     }
 }
 
-/// Closed to the last bit, unlike one whose poles are rounded.
+/// A ball that is closed exactly: its poles are not rounded.
 fn ball(radius: f32) -> Shape {
     let profile: Vec<[f32; 2]> = (0..=24)
         .map(|i| {
@@ -521,7 +540,7 @@ fn ball(radius: f32) -> Shape {
     test_shapes::revolved(&profile, 48)
 }
 
-/// A ring with a ball in its plane that moves the centre of mass off the ring's, towards its own -x.
+/// A ring with a ball in its plane that shifts the centre of mass towards the ring's -x.
 fn weighted_ring() -> Shape {
     let mut shape = ring();
     shape.append(&ball(0.008), Vector::new(-0.045, 0.0, 0.0));
@@ -531,7 +550,7 @@ fn weighted_ring() -> Shape {
 #[test]
 fn an_arc_on_a_rod_is_stable_with_the_centre_of_mass_below_its_own() {
     Scene::new(weighted_ring(), rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
-        // Without friction, so that neither rolling nor sticking hides what is not stable.
+        // Without friction, so that neither rolling nor sticking hides an instability.
         let settle = |lab: &mut Lab, degrees: f32| {
             let turn = turned(Vector::x(), degrees) * turned(Vector::y(), -90.0);
             let release = Pose::from_parts(Translation3::new(0.0, 0.0, -hang(0.005) + 0.0005), turn);
@@ -543,7 +562,7 @@ fn an_arc_on_a_rod_is_stable_with_the_centre_of_mass_below_its_own() {
         };
         for degrees in [8.0, -8.0, 172.0, -172.0] {
             let (rest, turned) = settle(lab, degrees);
-            // From either side of the weight below it swings back, and from above it leaves for there.
+            // With the weight near the bottom it swings back; with the weight near the top it swings down.
             assert!((rest * Vector::x()).z > 0.998, "{degrees}: {rest}");
             assert!((turned - degrees.abs()).abs() < 6.0, "{degrees}: {turned}");
             let centre = rest * Point::origin();
@@ -575,8 +594,8 @@ fn a_wedge_stays_point_down_and_slips_out_point_up() {
         let release = at(0.0, 0.0, 0.006);
         assert!(lab.is_clear(&release, 0.0));
         let rest = lab.rest(&release, FRICTION);
-        // A rod of radius r whose middle is m off the wedge's touches a flank that leans by b from the vertical where the point
-        // of the wedge is (m cos b - r) / sin b below the rods, here beyond its lower end.
+        // A rod of radius r at a distance m from the middle of the wedge touches a flank at an angle b to the
+        // vertical when the wedge's apex is (m cos b - r) / sin b below the rods, here beyond its lower end.
         let lean = 0.015_f32.atan2(0.08);
         let below = (0.012 * lean.cos() - 0.004) / lean.sin();
         let apex = (rest * Point::new(0.0, 0.0, -0.04)).z;
@@ -584,7 +603,7 @@ fn a_wedge_stays_point_down_and_slips_out_point_up() {
     });
     let point_up = test_shapes::prism(0.04, &[[0.0, 0.04], [-0.015, -0.04], [0.015, -0.04]]);
     Scene::new(point_up, rods).try_out(|lab| {
-        // Half a millimetre off either rod, which can only push it down.
+        // Half a millimetre from either rod; both can only push it down.
         let release = Pose::identity();
         assert!(lab.is_clear(&release, 0.0) && !lab.is_clear(&release, 0.001));
         assert_eq!(lab.settle(&release, 1.0).0, Fate::SlidesOff);
@@ -593,12 +612,12 @@ fn a_wedge_stays_point_down_and_slips_out_point_up() {
 
 #[test]
 fn energy_never_grows() {
-    let no_drag = |friction| Settings { friction, drag: 0.0, spin_drag: 0.0 };
+    let no_drag = |friction| Settings::undamped(&with_friction(friction));
     let ring = || Scene::new(ring(), rod(Vector::x(), 0.1, 0.005));
     let plate = test_shapes::prism(0.04, &[[-0.02, -0.005], [0.02, -0.005], [0.02, 0.005], [-0.02, 0.005]]);
     let plate = Scene::new(plate, plane(0.3, 0.1, |p| p));
     for (scene, release, name) in [
-        (ring(), at(0.0, 0.01, 0.0) * on_rod(), "a ring let go beside the rod"),
+        (ring(), at(0.0, 0.01, 0.0) * on_rod(), "a ring released beside the rod"),
         (ring(), at(0.0, 0.0, 0.005) * on_rod(), "a ring dropped on the rod"),
         (
             plate,
@@ -613,7 +632,8 @@ fn energy_never_grows() {
                     let inertia = body.inverse_inertia_in(state).try_inverse().unwrap();
                     let kinetic =
                         0.5 * (state.velocity.norm_squared() + state.spin.dot(&(inertia * state.spin)));
-                    // Of a unit mass, as a height: a millimetre is what the patches that stand for the supporter's surface are off.
+                    // Energy of the unit mass as a height. The patches may differ from the surface by a
+                    // millimetre.
                     let energy = kinetic / GRAVITY + state.centre.z;
                     least = least.min(energy);
                     grown = grown.max(energy - least);
@@ -625,21 +645,21 @@ fn energy_never_grows() {
 }
 
 #[test]
-fn what_touches_nothing_falls() {
+fn a_body_without_contact_falls() {
     Scene::new(ring(), rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
         let above = at(0.0, 0.0, -0.045) * on_rod();
         assert!(lab.is_clear(&above, 0.001));
         let (fate, end) = lab.settle(&above, FRICTION);
         assert_eq!(fate, Fate::SlidesOff, "it does not turn");
         let fallen = above.translation.z - end.translation.z;
-        assert!(fallen > settle::most_sinking(&lab.body), "{fallen}");
-        // The rod through the wire is not clear, and neither is one that is nearer than was asked for.
+        assert!(fallen > settle::max_sinking(&lab.body), "{fallen}");
+        // A rod inside the ring's wire is not clear, and neither is one closer than the clearance.
         assert!(!lab.is_clear(&(at(0.0, 0.0, -0.004) * on_rod()), 0.0));
         assert!(lab.is_clear(&on_rod(), 0.0) && !lab.is_clear(&(at(0.0, 0.0, -0.0008) * on_rod()), 0.0005));
     });
 }
 
-/// How far gravity may tilt towards each direction, degrees.
+/// Tilts of gravity that the rest pose survives, degrees.
 fn tilts(lab: &mut Lab, rest: &Pose) -> [f32; DIRECTIONS] {
     lab.firmness(rest).margin.tilts.map(f32::to_degrees)
 }
@@ -647,10 +667,10 @@ fn tilts(lab: &mut Lab, rest: &Pose) -> [f32; DIRECTIONS] {
 #[test]
 fn a_ring_on_a_rod_leaves_over_its_end_and_not_across() {
     Scene::new(ring(), rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
-        // A centimetre from the end that is towards the first direction.
+        // One centimetre from the rod's end in the first direction.
         let rest = lab.rest(&(at(0.04, 0.0, 0.0) * on_rod()), FRICTION);
         let tilts = tilts(lab, &rest);
-        // It starts to slide at 21.8 degrees; the ramp goes on while it does.
+        // It starts to slide at 21.8 degrees, and gravity tilts further while it slides.
         assert!((21.8..50.0).contains(&tilts[0]), "{tilts:?}");
         let most = Margin::MOST_TILT.to_degrees();
         assert!(tilts[2] == most && tilts[6] == most, "across: {tilts:?}");
@@ -672,7 +692,7 @@ fn the_tilts_turn_with_the_scene() {
     let straight = tilts(0);
     for eighths in [1, 2, 5] {
         let turned = tilts(eighths);
-        // Towards the rod's end, and not across. Beside the end it is a matter of where the points are.
+        // Towards the rod's end and across the rod. Other directions depend on the positions of the points.
         assert!((turned[eighths] - straight[0]).abs() < 6.0, "{eighths}: {straight:?} {turned:?}");
         for k in [2, 6] {
             assert!(turned[(eighths + k) % DIRECTIONS] > 50.0, "{eighths}: {turned:?}");
@@ -696,7 +716,7 @@ fn contacts_bear_the_weight() {
 
 #[test]
 fn a_deep_hook_is_firmer_than_a_shallow_one() {
-    // A bar between two lips of this height over its top.
+    // A bar with a lip of this height over its top at either end.
     let hook = |lip: f32| {
         let end = |x: f32, height: f32| {
             test_shapes::peg(Point::new(x, 0.0, 0.0), Point::new(x, 0.0, 0.004 + height), 0.004, 0.0012)
@@ -704,7 +724,7 @@ fn a_deep_hook_is_firmer_than_a_shallow_one() {
         let bar = rod(Vector::x(), 0.03, 0.004);
         Scene::new(ring(), together([bar, end(-0.015, lip), end(0.015, lip)]))
     };
-    // From one and the same place: how far it is from either end must not differ.
+    // All from the same rest pose, so that the distances to the ends are equal.
     let mut rest = on_rod();
     hook(0.0).try_out(|lab| rest = lab.rest(&on_rod(), FRICTION));
     let firmness = |lip: f32| {
@@ -717,7 +737,8 @@ fn a_deep_hook_is_firmer_than_a_shallow_one() {
     for k in [0, 4] {
         assert!(none.tilts[k] < low.tilts[k] && low.tilts[k] < deep.tilts[k], "{margins:?}");
     }
-    // Half a millimetre is less than the points tell apart at each end, but not at both together.
+    // A lip of half a millimetre is below the resolution of the points at one end, but not in the sum over
+    // both ends.
     let both = |margin: &Margin| margin.tilts[0] + margin.tilts[4];
     assert!(margins.is_sorted_by(|a, b| both(a) < both(b)), "{margins:?}");
     assert!(none.escape_rise < shallow.escape_rise && shallow.escape_rise < deep.escape_rise);
@@ -726,9 +747,10 @@ fn a_deep_hook_is_firmer_than_a_shallow_one() {
 
 #[test]
 fn a_jolt_shakes_off_what_hangs_close_to_the_end() {
-    // Friction would hold the ring anywhere on the level rod if the tilt came slowly. Its swing makes it slip; but no faster than at
-    // the end of a swing, v^2 = 2 g l (1 - cos 43.6 degrees) with the centre of mass l = 21 mm below the rod, 0.34 m/s: once it slips,
-    // friction is as much as what pulls. So in the middle of a metre it stays for a second.
+    // Under a slow tilt friction would hold the ring anywhere on the level rod. Under a jolt its swing makes
+    // it slip, but no faster than at the end of a swing, v^2 = 2 g l (1 - cos 43.6 degrees) with the centre
+    // of mass l = 21 mm below the rod, 0.34 m/s: once it slips, friction equals the pull. So in the middle of
+    // a rod of one metre it stays for a second.
     Scene::new(ring(), rod(Vector::x(), 1.0, 0.005)).try_out(|lab| {
         let mut margin_at = |x: f32| {
             let rest = lab.rest(&(Pose::translation(x, 0.0, 0.0) * on_rod()), FRICTION);
@@ -741,16 +763,82 @@ fn a_jolt_shakes_off_what_hangs_close_to_the_end() {
 }
 
 #[test]
-fn a_release_is_off_by_the_clearance() {
+fn a_release_pose_keeps_the_clearance() {
     Scene::new(ring(), rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
         let rest = lab.rest(&on_rod(), FRICTION);
         let (monitor, clearance) = (Monitor::new(), 0.001);
         let (scene, mut meter) = ((&lab.body, &lab.support), Meter::new(&monitor));
         let (pose, gap) = release_pose(scene, &rest, clearance, &-DOWN, &mut lab.sleeps, &mut meter).unwrap();
         assert_eq!(gap, clearance);
-        // The points lie between the patches of their neighbours, which may be off by a little.
+        // The patches around a point may differ a little from it.
         assert!(lab.is_clear(&pose, 0.0008) && !lab.is_clear(&rest, 0.0008));
         let lift = (pose * lab.body.centre - rest * lab.body.centre).dot(&-DOWN);
         assert!((0.0005..0.003).contains(&lift), "{lift}");
+    });
+}
+
+#[test]
+fn the_default_durations_are_these_numbers_of_steps() {
+    let settings = Settings::damped(&Params::default());
+    let steps = [
+        settings.settle_time,
+        constants::SWING_TIME,
+        constants::REST_WINDOW,
+        constants::FREEING_TIME,
+        constants::DEPARTURE_TIME,
+    ];
+    assert_eq!(steps.map(|seconds| settings.steps(seconds)), [750, 1000, 20, 125, 25]);
+    assert_eq!(settings.rest_speed * constants::REST_WINDOW, 0.0004);
+}
+
+#[test]
+fn other_time_steps_give_the_same_rest() {
+    Scene::new(ring(), rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
+        let release = at(0.01, 0.004, 0.0) * on_rod();
+        let mut rest = |time_step: f32| {
+            let params = Params { time_step, ..Params::default() };
+            let (fate, pose) = lab.settle_with(&release, &DOWN, &params);
+            assert_eq!(fate, Fate::Rests, "{time_step}: {pose}");
+            pose
+        };
+        let usual = rest(0.004);
+        for time_step in [0.005, 0.002, 0.0005] {
+            let pose = rest(time_step);
+            let shift = (usual * Point::origin() - pose * Point::origin()).norm();
+            let turn = usual.rotation.angle_to(&pose.rotation).to_degrees();
+            assert!(shift < 0.001 && turn < 2.0, "{time_step}: {shift} m, {turn} degrees");
+        }
+    });
+}
+
+#[test]
+fn a_body_that_settles_slowly_moves_until_the_settle_time_is_over() {
+    Scene::new(weighted_ring(), rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
+        // The weight swings down from 90 degrees.
+        let turn = turned(Vector::x(), 90.0) * turned(Vector::y(), -90.0);
+        let release = Pose::from_parts(Translation3::new(0.0, 0.0, -hang(0.005) + 0.0005), turn);
+        for (settle_time, fate) in [(0.3, Fate::Moves), (3.0, Fate::Rests)] {
+            let params = Params { settle_time, ..Params::default() };
+            assert_eq!(lab.settle_with(&release, &DOWN, &params).0, fate, "{settle_time}");
+        }
+    });
+}
+
+#[test]
+fn a_body_slower_than_the_rest_speed_rests() {
+    // Without friction the ring slides along the rod. With a damping rate of 2/s its final speed is g
+    // sin(slope) / 2.
+    Scene::new(ring(), rod(Vector::x(), 0.5, 0.005)).try_out(|lab| {
+        for (speed, rest_speed, fate) in [
+            (0.04, 0.1, Fate::Rests),
+            (0.04, 0.005, Fate::Moves),
+            (0.003, 0.005, Fate::Rests),
+            (0.003, 0.0002, Fate::Moves),
+        ] {
+            let slope = (2.0 * speed / GRAVITY).asin().to_degrees();
+            let params = Params { rest_speed, ..with_friction(0.0) };
+            let (found, pose) = lab.settle_with(&on_rod(), &tilted(slope, Vector::x()), &params);
+            assert_eq!(found, fate, "{speed} m/s, rest below {rest_speed} m/s: {pose}");
+        }
     });
 }

@@ -1,33 +1,46 @@
-//! Where a patch of the supporter is nearest to the body.
+//! The nearest point of a patch to the body.
 
 use super::Body;
+use super::constants::{
+    CERTAIN_DEPTH, FACING_COSINE, FLAT_SLOPE, MAX_PARTS, MAX_STRIDE_GROWTH, MIN_PART_ASPECT, MIN_PART_LENGTH,
+    MIN_REFINEMENT_CURVATURE, PART_STACK, REFINEMENT_STEPS, REFINEMENT_TOLERANCE, SAME_SIDE_COSINE,
+    SECANT_STEPS, STRIDE_REDUCTION, SURFACE_QUERY_OFFSET,
+};
 use super::patch::Patch;
 use crate::geometry::{Point, Vector, unit_or};
 use heapless::Vec;
 use nalgebra::Rotation3;
 
-/// Where a patch is nearest to, or deepest in, the body; in object coordinates.
+/// The point of a patch that is nearest to the body, or deepest inside it, in object coordinates.
 pub(super) struct Nearest {
+    /// Position, metres.
     pub(super) at: Point,
-    /// The same, as an offset along and across the patch.
+    /// Offset of the point along and across the patch, metres.
     pub(super) offset: [f32; 2],
-    /// Between the surfaces, metres, and its gradient.
+    /// Signed distance from the body's surface, metres, negative inside.
     pub(super) gap: f32,
+    /// Gradient of the signed distance: of unit length, or zero where it is undefined.
     pub(super) gradient: Vector,
 }
 
-/// A patch as the object sees it.
+/// A patch in object coordinates.
 struct View<'a> {
     body: &'a Body<'a>,
     patch: &'a Patch,
+    /// Centre of the patch, metres.
     at: Point,
     along: Vector,
     across: Vector,
     normal: Vector,
 }
 
-/// Looks for that place from the patch's point `at`, in object coordinates; `rotation` is the object's. If no part of the patch is
-/// closer than `margin` metres, as far as the field can tell, says how far the body has to move until that may be, metres.
+/// Finds the nearest point of a patch with the distance field. `at` is the centre of the patch in object
+/// coordinates; `rotation` rotates object to supporter coordinates.
+///
+/// # Errors
+///
+/// If no part of the patch is closer than `margin` metres by the field: the distance that the body must
+/// travel before one may be, metres.
 pub(super) fn nearest_on_patch(
     body: &Body,
     patch: &Patch,
@@ -43,41 +56,28 @@ pub(super) fn nearest_on_patch(
     }
     let view = View::new(body, patch, rotation, at);
     let start = match sample {
-        Ok((gap, gradient)) if !patch.is_all_around() => Nearest { at: *at, offset: [0.0; 2], gap, gradient },
-        // The field is exact close to the body only, and a long patch may pass it far from its point.
+        Ok((gap, gradient)) if !patch.is_wire() => Nearest { at: *at, offset: [0.0; 2], gap, gradient },
+        // The field is exact only close to the body, and a long patch may be close to the body far from its
+        // centre.
         _ => view.nearest_part(margin)?,
     };
-    if patch.is_all_around() {
+    if patch.is_wire() {
         return Ok(start);
     }
-    // The rim of a patch comes closer than its point, by about this.
+    // Estimate of how much closer the rim is than the centre.
     let [a, b] = patch.extents;
     let fall = start.gradient.dot(&view.along).abs() * a + start.gradient.dot(&view.across).abs() * b;
     if start.gap - fall > margin {
-        // That is an estimate: it is looked at again when half of it is used up.
+        // The excess over the margin is an estimate, so the patch is visited again when half of it is used
+        // up.
         return Err((start.gap - patch.reach() - margin).max(0.5 * (start.gap - fall - margin)));
     }
-    Ok(view.descend(start))
+    Ok(view.minimise_gap(start))
 }
 
-/// The surface itself is asked from so far off it, metres: there it is certain on which side that is, and an edge has a direction.
-const OFF: f32 = 0.0002;
-/// What is deeper in the body by the field than this, in voxels, which is what it may be off by, is in there for certain: it knows the way
-/// out.
-const DEEP: f32 = 0.5;
-/// Unless the patch and the body face each other, by this cosine, it is asked from where the body faces.
-const FACING: f32 = 0.5;
-/// What is seen there from farther aside than this cosine is on the other side of the surface.
-const ASIDE: f32 = 0.3;
-/// The place is corrected so often at most, as long as that leads farther than `CLOSE`, metres.
-const CORRECTIONS: usize = 3;
-const CLOSE: f32 = 1e-5;
-/// Patches that are flatter are taken to be bent like this, 1/m: on a flat one it is endlessly far to where there is no slope.
-const FLATTEST: f32 = 50.0;
-
-/// A place that was found with the field, by the body's surface itself: in thin walls and at edges the field may be off by half a voxel,
-/// and its gradient by ten degrees, which is the difference between what holds by friction and what slides. `at` is the patch's point, as
-/// for [`nearest_on_patch`].
+/// Refines a point that was found with the distance field by queries of the mesh. In thin walls and at edges
+/// the field may be wrong by half a voxel, and its gradient by ten degrees, which is the difference between
+/// sticking and sliding. `at` is the centre of the patch, as for [`nearest_on_patch`].
 pub(super) fn refine(
     body: &Body,
     patch: &Patch,
@@ -85,24 +85,24 @@ pub(super) fn refine(
     at: &Point,
     found: Nearest,
 ) -> Nearest {
-    // A wire is asked for from its axis, where the field errs less.
-    if found.gap < -DEEP * body.field.voxel_size() || patch.is_all_around() {
+    // The field is queried on the axis of a wire, where its error is smaller.
+    if found.gap < -CERTAIN_DEPTH * body.field.voxel_size() || patch.is_wire() {
         return found;
     }
     let view = View::new(body, patch, rotation, at);
-    let Some(mut nearest) = view.look_closely(&found, found.offset, body.field.voxel_size()) else {
+    let Some(mut nearest) = view.sample_mesh(&found, found.offset, body.field.voxel_size()) else {
         return found;
     };
-    for _ in 0..CORRECTIONS {
+    for _ in 0..REFINEMENT_STEPS {
         let [x, y] = nearest.offset;
         let (slope, curvatures) = (view.slope(&nearest), patch.curvatures_towards([x, y]));
-        let [a, b] = curvatures.map(|curvature| 1.0 / curvature.max(FLATTEST));
+        let [a, b] = curvatures.map(|curvature| 1.0 / curvature.max(MIN_REFINEMENT_CURVATURE));
         let offset = patch.clamp([x - slope[0] * a, y - slope[1] * b]);
-        let way = (offset[0] - x).abs() + (offset[1] - y).abs();
-        if way < CLOSE {
+        let step = (offset[0] - x).abs() + (offset[1] - y).abs();
+        if step < REFINEMENT_TOLERANCE {
             break;
         }
-        match view.look_closely(&nearest, offset, way + OFF) {
+        match view.sample_mesh(&nearest, offset, step + SURFACE_QUERY_OFFSET) {
             Some(next) if next.gap < nearest.gap => nearest = next,
             _ => break,
         }
@@ -110,32 +110,14 @@ pub(super) fn refine(
     nearest
 }
 
-/// A part of a patch.
+/// A part of a patch, over its whole width.
 #[derive(Clone, Copy)]
 struct Part {
-    /// Of its middle, along.
+    /// Offset of its centre along the patch, metres.
     offset: f32,
     /// Half its length, metres.
     half: f32,
 }
-
-/// Parts are not cut further that are shorter than this to either side, metres, or than this part of their width: then it is the width
-/// that keeps them from being told to be far off.
-const SMALL: f32 = 0.0021;
-const WIDE: f32 = 0.5;
-/// And no patch is cut into more than so many, however large: in a scene that was meant in millimetres they would be thousands.
-const MOST_PARTS: f32 = 64.0;
-/// Parts that wait, at most: one more than a patch is cut in two.
-const WAITING: usize = 8;
-
-/// The place where a patch touches is looked for in so many steps at most,
-const DESCENTS: usize = 4;
-/// until it is flat there: a slope below this,
-const FLAT: f32 = 0.02;
-/// and of strides up to so many times as long as first thought.
-const LONGEST_STRIDE: f32 = 4.0;
-/// What leads uphill was too far by this.
-const SHORTER: f32 = 0.3;
 
 impl<'a> View<'a> {
     fn new(body: &'a Body<'a>, patch: &'a Patch, rotation: &Rotation3<f32>, at: &Point) -> Self {
@@ -143,60 +125,66 @@ impl<'a> View<'a> {
         Self { body, patch, at: *at, along, across, normal }
     }
 
-    /// The place at an offset along and across; on the axis of a wire.
-    fn place(&self, offset: [f32; 2]) -> Point {
+    /// Point of the patch at an offset; of a wire, the point on its axis.
+    fn point_at(&self, offset: [f32; 2]) -> Point {
         self.at + self.along * offset[0] + self.across * offset[1] - self.normal * self.patch.depth(offset)
     }
 
-    /// What is there.
-    fn look(&self, offset: [f32; 2]) -> Nearest {
-        let at = self.place(offset);
+    /// Queries the field at an offset.
+    fn sample_field(&self, offset: [f32; 2]) -> Nearest {
+        let at = self.point_at(offset);
         let (gap, gradient) = self.body.field.sample(&at);
         Nearest { at, offset, gap, gradient }
     }
 
-    /// What is there by the body's surface, if its gap is not greater by more than `more` metres than at `near`, a place close by.
-    fn look_closely(&self, near: &Nearest, offset: [f32; 2], more: f32) -> Option<Nearest> {
-        let at = self.place(offset);
+    /// Queries the mesh at an offset close to the known point `near`. Returns `None` if the gap exceeds that
+    /// of `near` by more than `tolerance` metres, or if the mesh is on another side than expected.
+    fn sample_mesh(&self, near: &Nearest, offset: [f32; 2], tolerance: f32) -> Option<Nearest> {
+        let at = self.point_at(offset);
         let [x, y, z] = self.patch.normal_at(offset);
         let own = self.along * x + self.across * y + self.normal * z;
-        let out = if own.dot(&near.gradient) < -FACING { -own } else { near.gradient };
-        let from = at + out * OFF;
-        let closest = self.body.surface.closest_point_within(&from, near.gap.max(0.0) + OFF + more)?;
-        let (way, length) = (from - closest, (from - closest).norm());
-        if out.dot(&way) <= ASIDE * length {
+        let out = if own.dot(&near.gradient) < -FACING_COSINE { -own } else { near.gradient };
+        let from = at + out * SURFACE_QUERY_OFFSET;
+        let radius = near.gap.max(0.0) + SURFACE_QUERY_OFFSET + tolerance;
+        let closest = self.body.surface.closest_point_within(&from, radius)?;
+        let (distance, length) = (from - closest, (from - closest).norm());
+        if out.dot(&distance) <= SAME_SIDE_COSINE * length {
             return None;
         }
-        let gradient = way / length;
+        let gradient = distance / length;
         Some(Nearest { at, offset, gap: (at - closest).dot(&gradient), gradient })
     }
 
-    /// Looks for the part of the patch that is nearest to the body by cutting the patch in two as long as a part may be closer than
-    /// `margin` and the field is not exact there. If none is, says how far the body has to move until that may be.
+    /// Finds the part of the patch that is nearest to the body by bisection: a part is cut in two while it
+    /// may be closer than `margin` metres and the field is not exact there.
+    ///
+    /// # Errors
+    ///
+    /// If no part is closer: the distance that the body must travel before one may be, metres.
     fn nearest_part(&self, margin: f32) -> Result<Nearest, f32> {
         let (field, [length, width]) = (self.body.field, self.patch.extents);
-        let small = SMALL.max(WIDE * width).max(length / MOST_PARTS);
-        let (mut nearest, mut way) = (None::<Nearest>, f32::INFINITY);
-        let mut waiting = Vec::<Part, WAITING>::new();
+        let min_half = MIN_PART_LENGTH.max(MIN_PART_ASPECT * width).max(length / MAX_PARTS);
+        let (mut nearest, mut travel) = (None::<Nearest>, f32::INFINITY);
+        let mut waiting = Vec::<Part, PART_STACK>::new();
         let _ = waiting.push(Part { offset: 0.0, half: length });
         while let Some(Part { offset, half }) = waiting.pop() {
-            let at = self.place([offset, 0.0]);
+            let at = self.point_at([offset, 0.0]);
             let sample = field.sample_near(&at);
             let gap =
                 sample.map_or_else(|bound| bound, |(gap, _)| gap) - libm::sqrtf(half * half + width * width);
             if gap > margin {
-                way = way.min(gap - margin);
+                travel = travel.min(gap - margin);
                 continue;
             }
-            let is_small = half <= small;
+            let is_small = half <= min_half;
             match sample {
-                Ok(sample) if !self.patch.is_all_around() || is_small => {
-                    let found = self.facing(offset, at, sample);
+                Ok(sample) if !self.patch.is_wire() || is_small => {
+                    let found = self.nearest_around(offset, at, sample);
                     if nearest.as_ref().is_none_or(|nearest| found.gap < nearest.gap) {
                         nearest = Some(found);
                     }
                 }
-                Err(_) if is_small => way = way.min(field.way_to_bricks(&at)),
+                Err(_) if is_small => travel = travel.min(field.way_to_bricks(&at)),
                 _ => {
                     let half = 0.5 * half;
                     for side in [half, -half] {
@@ -205,11 +193,12 @@ impl<'a> View<'a> {
                 }
             }
         }
-        nearest.ok_or(way.max(0.0))
+        nearest.ok_or(travel.max(0.0))
     }
 
-    /// The place of a patch there; of a wire, around its axis, the one that faces the body.
-    fn facing(&self, offset: f32, at: Point, (gap, gradient): (f32, Vector)) -> Nearest {
+    /// Nearest point of the patch at an offset along it, where `at` is the point there; of a wire, the point
+    /// around its axis that faces the body.
+    fn nearest_around(&self, offset: f32, at: Point, (gap, gradient): (f32, Vector)) -> Nearest {
         let radius = self.patch.wire_radius();
         if radius == 0.0 || gap < 0.0 {
             return Nearest { at, offset: [offset, 0.0], gap: gap - radius, gradient };
@@ -220,30 +209,30 @@ impl<'a> View<'a> {
         Nearest { at, offset: [offset, towards.dot(&self.across)], gap, gradient }
     }
 
-    /// Goes on from a place of the patch to the nearest one, by the secant method in either direction.
-    fn descend(&self, start: Nearest) -> Nearest {
+    /// Minimises the gap over the patch from a point of it, by the secant method in either direction.
+    fn minimise_gap(&self, start: Nearest) -> Nearest {
         let mut nearest = start;
-        let first = self.patch.strides(nearest.offset);
+        let first = self.patch.initial_strides(nearest.offset);
         let (mut strides, mut slope) = (first, self.slope(&nearest));
-        for _ in 0..DESCENTS {
+        for _ in 0..SECANT_STEPS {
             let [x, y] = nearest.offset;
             let offset = self.patch.clamp([x - strides[0] * slope[0], y - strides[1] * slope[1]]);
-            let way = [offset[0] - x, offset[1] - y];
-            // It is flat, or downhill is over the rim.
-            if (0..2).all(|k| way[k].abs() <= FLAT * strides[k]) {
+            let step = [offset[0] - x, offset[1] - y];
+            // Converged, or the gap decreases only beyond the rim.
+            if (0..2).all(|k| step[k].abs() <= FLAT_SLOPE * strides[k]) {
                 break;
             }
-            let next = self.look(offset);
+            let next = self.sample_field(offset);
             if next.gap >= nearest.gap {
-                strides = strides.map(|stride| stride * SHORTER);
+                strides = strides.map(|stride| stride * STRIDE_REDUCTION);
                 continue;
             }
             let next_slope = self.slope(&next);
             nearest = next;
             for k in 0..2 {
                 let change = next_slope[k] - slope[k];
-                if change * way[k] > 0.0 {
-                    strides[k] = (way[k] / change).min(first[k] * LONGEST_STRIDE);
+                if change * step[k] > 0.0 {
+                    strides[k] = (step[k] / change).min(first[k] * MAX_STRIDE_GROWTH);
                 }
             }
             slope = next_slope;
@@ -251,7 +240,7 @@ impl<'a> View<'a> {
         nearest
     }
 
-    /// How much the gap grows along and across the patch.
+    /// Slope of the gap along and across the patch: its change per metre on the surface.
     fn slope(&self, nearest: &Nearest) -> [f32; 2] {
         let normal = self.patch.normal_at(nearest.offset);
         let gradient = [&self.along, &self.across, &self.normal].map(|axis| nearest.gradient.dot(axis));

@@ -141,15 +141,15 @@ impl<'a> Settling<'a> {
         let Some((Release { pose, gap, sinking }, settled)) = self.find_release(settled, meter)? else {
             return Ok(false);
         };
-        let (down, friction) = (-self.params.up(), self.params.friction);
-        if !comes_free(scene, &settled.pose, &down, Settings::damped(friction), self.sleeps, meter)? {
+        let (down, params) = (-self.params.up(), self.params);
+        if !comes_free(scene, &settled.pose, &down, Settings::damped(params), self.sleeps, meter)? {
             self.counts.wedged += 1;
             return Ok(false);
         }
         // A pose that cannot beat the last one of a full list need not be tilted in every direction.
         let last = poses.next_to_go().and_then(|pose| pose.rest).map_or(0.0, |rest| rest.probability);
         let least = probability::least_tilt(last, gap).max(MIN_USEFUL_TILT);
-        let firm = firmness(scene, &settled.pose, &down, friction, least, self.sleeps, meter)?;
+        let firm = firmness(scene, &settled.pose, &down, params, least, self.sleeps, meter)?;
         let rest = Rest::new(settled.pose, sinking, gap, &firm);
         if rest.probability >= self.params.min_probability && self.known(&rest.pose, poses).is_none() {
             self.counts.probable += 1;
@@ -165,7 +165,7 @@ impl<'a> Settling<'a> {
     }
 
     fn settle(&mut self, start: &Pose, meter: &mut Meter) -> Result<Settled, Stop> {
-        let settings = Settings::damped(self.params.friction);
+        let settings = Settings::damped(self.params);
         settle((self.body, self.support), start, &-self.params.up(), settings, self.sleeps, meter)
     }
 
