@@ -16,20 +16,23 @@ const MIN_INWARD: f32 = 0.8;
 const MAX_THICKNESS: f32 = 0.025;
 /// Cosine between opposing normals, and between a normal and the way to the opposing point.
 const OPPOSING: f32 = 0.7;
-/// Opposing pairs below which the pairs decide nothing.
-const MIN_PAIRS: f32 = 8.0;
+/// Points of a piece whose votes must agree, net, for it to be reversed or kept by them: by chance fewer do.
+const MIN_VOTES: f32 = 8.0;
 
 /// Cosine of the bend between neighbours up to which they are in one piece: 53 degrees.
 const SMOOTH: f32 = 0.6;
-/// Share of the bending that must be convex, or concave, in excess of the other for the curvature to decide.
-const MIN_BIAS: f32 = 0.3;
+/// Share of a piece's voters by which those with an opposite surface on one side must outnumber those with one on the other.
+const MIN_SHARE: f32 = 0.25;
+/// Mean sine of the bend between neighbours above which a piece is convex, or below its negative concave. Less is what noise bends a
+/// plane by.
+const MIN_DIVERGENCE: f32 = 0.02;
 
 // Budget.
 
 /// Neighbours to which orientation is propagated from a point.
 const NEIGHBOURS: usize = 16;
 /// Points that vote on the side of a cloud.
-const VOTERS: usize = 256;
+const VOTERS: usize = 512;
 /// Nearest points with which a voter's normal is compared, itself included: a ring around it, not only its row in a regular grid.
 const COMPARED: usize = 9;
 
@@ -62,14 +65,14 @@ pub(crate) fn judge(tree: &PointTree, normals: &[Vector]) -> Given {
             compared += agreement.abs();
             agree += agreement.max(0.0);
         }
-        if let Some(side) = opposing_side(tree, normals, index) {
+        if let Some(side) = opposing_side(tree, normals, index, |_| false) {
             pairs += 1.0;
             inward += f32::from(u8::from(side > 0.0));
         }
     }
     if agree < MIN_AGREEMENT * compared {
         Given::Unoriented
-    } else if pairs >= MIN_PAIRS && inward >= MIN_INWARD * pairs {
+    } else if pairs >= MIN_VOTES && inward >= MIN_INWARD * pairs {
         Given::Inwards
     } else {
         Given::Outwards
@@ -142,9 +145,10 @@ pub(crate) fn orient(
     }
     for index in voters(points.len()) {
         let votes = &mut votes[piece_of[index] as usize];
-        votes.pairs -= opposing_side(tree, normals, index).unwrap_or(0.0);
-        let curvature = mean_curvature(tree, normals, index);
-        (votes.curvature, votes.bending) = (votes.curvature + curvature, votes.bending + curvature.abs());
+        let is_free = |other: usize| piece_of[other] != piece_of[index];
+        votes.pairs -= opposing_side(tree, normals, index, is_free).unwrap_or(0.0);
+        votes.divergence += divergence(tree, normals, index);
+        votes.voters += 1.0;
     }
     // A piece comes after the one that it was reached from.
     for piece in 0..pieces as usize {
@@ -169,9 +173,10 @@ const NONE: u32 = u32::MAX;
 struct Votes {
     /// Opposing points behind the normals, less those in front of them.
     pairs: f32,
-    /// Sum of the mean curvatures, and of their absolute values.
-    curvature: f32,
-    bending: f32,
+    /// Sum of the divergences of the normals.
+    divergence: f32,
+    /// Points that voted.
+    voters: f32,
     /// -1 if the normals are to be reversed, else 1.
     sign: f32,
 }
@@ -179,10 +184,10 @@ struct Votes {
 impl Votes {
     /// The sign, if the votes are clear.
     fn decide(&self) -> Option<f32> {
-        if self.pairs.abs() >= MIN_PAIRS {
+        if self.pairs.abs() >= MIN_VOTES.max(MIN_SHARE * self.voters) {
             Some(self.pairs.signum())
-        } else if self.curvature.abs() > MIN_BIAS * self.bending {
-            Some(self.curvature.signum())
+        } else if self.voters >= MIN_VOTES && self.divergence.abs() > MIN_DIVERGENCE * self.voters {
+            Some(self.divergence.signum())
         } else {
             None
         }
@@ -202,16 +207,23 @@ fn transported(tree: &PointTree, normals: &[Vector], from: usize, to: usize) -> 
     if length_squared > 0.0 { normal - way * (2.0 * normal.dot(&way) / length_squared) } else { normal }
 }
 
-/// On which side of a point's normal the nearest point of the opposite surface lies: -1 behind it, as through a solid, 1 in front of it,
-/// `None` if there is none.
-fn opposing_side(tree: &PointTree, normals: &[Vector], index: usize) -> Option<f32> {
+/// On which side of a point's normal the nearest point of an opposite surface lies: -1 behind it, as through a solid, 1 in front of it,
+/// `None` if there is none. Opposite normals point in opposite directions; where `is_free` says that the sign of the other normal means
+/// nothing yet, along one line.
+fn opposing_side(
+    tree: &PointTree,
+    normals: &[Vector],
+    index: usize,
+    is_free: impl Fn(usize) -> bool,
+) -> Option<f32> {
     let (point, normal) = (tree.points()[index], normals[index]);
     let mut side = None;
     tree.bvh().visit_near(&point, MAX_THICKNESS * MAX_THICKNESS, |items, mut limit| {
         for other in items {
             let way = tree.points()[other] - point;
             let (distance_squared, along) = (way.norm_squared(), way.dot(&normal));
-            let is_opposing = normals[other].dot(&normal) < -OPPOSING
+            let cosine = normals[other].dot(&normal);
+            let is_opposing = (cosine < -OPPOSING || cosine > OPPOSING && is_free(other))
                 && along * along > OPPOSING * OPPOSING * distance_squared;
             if is_opposing && distance_squared < limit {
                 (limit, side) = (distance_squared, Some(along.signum()));
@@ -222,10 +234,18 @@ fn opposing_side(tree: &PointTree, normals: &[Vector], index: usize) -> Option<f
     side
 }
 
-/// A point's share of the total mean curvature, positive where the surface is convex seen from the side of the normals.
-fn mean_curvature(tree: &PointTree, normals: &[Vector], index: usize) -> f32 {
+/// How much the normals around a point diverge, on average the sine of their bend; positive where the surface is convex.
+fn divergence(tree: &PointTree, normals: &[Vector], index: usize) -> f32 {
     let point: Point = tree.points()[index];
     let mut found = [Neighbour::default(); NEIGHBOURS];
-    let turn = |other: usize| (normals[other] - normals[index]).dot(&(tree.points()[other] - point));
-    tree.k_nearest(&point, &mut found).iter().map(|neighbour| turn(neighbour.index as usize)).sum()
+    let (mut count, mut sum) = (0.0_f32, 0.0);
+    for neighbour in tree.k_nearest(&point, &mut found) {
+        let other = neighbour.index as usize;
+        if neighbour.distance_squared > 0.0 && normals[other].dot(&normals[index]) > SMOOTH {
+            let way = tree.points()[other] - point;
+            sum += (normals[other] - normals[index]).dot(&way) / way.norm();
+            count += 1.0;
+        }
+    }
+    sum / count.max(1.0)
 }
