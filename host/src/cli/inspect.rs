@@ -79,7 +79,7 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
             counts.contact_points, counts.clusters, counts.with_free_space, counts.encircled, counts.sites
         ),
         ObjectPlaces::Contacts { counts, .. } => format!(
-            "contact points  {}, of which {} are tried, those that catch best first\n",
+            "contact points  {}, {} of them contact candidates, the deepest capture first\n",
             counts.contact_points, counts.contacts
         ),
     };
@@ -150,7 +150,10 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
             counts.contact_points, counts.clusters, counts.sites
         ),
         SupporterPlaces::Contacts { counts, .. } => {
-            format!("contact points  {}, of which {} are tried\n", counts.contact_points, counts.contacts)
+            format!(
+                "contact points  {}, {} of them contact candidates\n",
+                counts.contact_points, counts.contacts
+            )
         }
     };
     if !supporter.contacts().is_empty() {
