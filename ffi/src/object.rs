@@ -156,7 +156,7 @@ pub unsafe extern "C" fn hangpose_object_get_info(
             with_free_space: counts.with_free_space as u32,
             encircled: counts.encircled as u32,
             sites: counts.sites as u32,
-            contacts: object.contacts().len() as u32,
+            contacts: object.places().contacts().len() as u32,
             rays: work.rays,
             distance_queries: work.distance_queries,
         })
@@ -205,7 +205,7 @@ pub unsafe extern "C" fn hangpose_object_get_site(
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
     let read = |object: &Object| {
-        let found = at(object.sites(), index)?;
+        let found = at(object.places().sites(), index)?;
         Ok(hangpose_object_site {
             struct_size: size_of::<hangpose_object_site>() as u32,
             contact_points: found.contact_points,
@@ -259,7 +259,7 @@ pub unsafe extern "C" fn hangpose_object_get_contact(
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
     let read = |object: &Object| {
-        let found = at(object.contacts(), index)?;
+        let found = at(object.places().contacts(), index)?;
         Ok(hangpose_object_contact {
             struct_size: size_of::<hangpose_object_contact>() as u32,
             position: found.position.into(),

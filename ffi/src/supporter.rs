@@ -201,7 +201,7 @@ pub unsafe extern "C" fn hangpose_supporter_get_info(
             contact_points: contact_points as u32,
             clusters: counts.clusters as u32,
             sites: counts.sites as u32,
-            contacts: supporter.contacts().len() as u32,
+            contacts: supporter.places().contacts().len() as u32,
             rays: work.rays,
             distance_queries: work.distance_queries,
         })
@@ -245,7 +245,7 @@ pub unsafe extern "C" fn hangpose_supporter_get_site(
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
     let read = |supporter: &Supporter| {
-        let found = at(supporter.sites(), index)?;
+        let found = at(supporter.places().sites(), index)?;
         Ok(hangpose_supporter_site {
             struct_size: size_of::<hangpose_supporter_site>() as u32,
             position: found.position.into(),
@@ -289,7 +289,7 @@ pub unsafe extern "C" fn hangpose_supporter_get_contact(
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
     let read = |supporter: &Supporter| {
-        let found = at(supporter.contacts(), index)?;
+        let found = at(supporter.places().contacts(), index)?;
         Ok(hangpose_supporter_contact {
             struct_size: size_of::<hangpose_supporter_contact>() as u32,
             position: found.position.into(),

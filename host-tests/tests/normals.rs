@@ -48,7 +48,7 @@ fn analyse(cloud: &CloudFile, truth: &CloudFile) -> (NormalCounts, usize, usize)
         let true_normal = truth[&key(&contact.position.into())];
         contact.normal.iter().zip(true_normal).map(|(a, b)| a * b).sum::<f32>() > 0.5
     };
-    let contacts = supporter.contacts();
+    let contacts = supporter.places().contacts();
     (supporter.normals(), contacts.iter().filter(is_right).count(), contacts.len())
 }
 

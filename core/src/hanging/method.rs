@@ -4,11 +4,13 @@
 //! `search`, which writes poses; and `Counts::empty_stage`, which names the step that left nothing.
 
 use super::contacts::{self, ObjectContact, SupportContact};
-use super::object::ObjectSamples;
-use super::settling::SettlingCounts;
+use super::error::PredictError;
+use super::found::Found;
+use super::pose::HangingPose;
+use super::samples::{ObjectSamples, SupporterCloud};
+use super::scene::Scene;
 use super::sites::{self, HangingSite, SupportSite};
-use super::supporter::SupporterCloud;
-use super::{HangingPose, Object, PredictError, Stage, Supporter};
+use super::stage::Stage;
 use crate::geometry::{Mesh, Point, Vector};
 use crate::memory::{Arena, OutOfMemory};
 use crate::monitor::{Meter, Stop};
@@ -95,23 +97,15 @@ impl<'m> ObjectSlots<'m> {
     }
 }
 
-impl<'m> Object<'m> {
-    /// The hanging sites, the best encircled first; none unless it was analysed with [`Candidates::Sites`].
+impl<'m> ObjectPlaces<'m> {
+    /// The hanging sites, the best encircled first; none by another method.
     pub fn sites(&self) -> &'m [HangingSite] {
-        if let ObjectPlaces::Sites { sites, .. } = *self.places() { sites } else { &[] }
+        if let Self::Sites { sites, .. } = *self { sites } else { &[] }
     }
 
-    /// The contact candidates, the deepest capture first; none unless it was analysed with [`Candidates::Contacts`].
+    /// The contact candidates, the deepest capture first; none by another method.
     pub fn contacts(&self) -> &'m [ObjectContact] {
-        if let ObjectPlaces::Contacts { contacts, .. } = *self.places() { contacts } else { &[] }
-    }
-
-    pub(super) fn site_counts(&self) -> sites::ObjectCounts {
-        if let ObjectPlaces::Sites { counts, .. } = *self.places() { counts } else { Default::default() }
-    }
-
-    pub(super) fn contact_counts(&self) -> contacts::ObjectCounts {
-        if let ObjectPlaces::Contacts { counts, .. } = *self.places() { counts } else { Default::default() }
+        if let Self::Contacts { contacts, .. } = *self { contacts } else { &[] }
     }
 }
 
@@ -178,40 +172,16 @@ impl<'m> SupporterSlots<'m> {
     }
 }
 
-impl<'m> Supporter<'m> {
-    /// The support sites, the thinnest first; none unless it was analysed with [`Candidates::Sites`].
+impl<'m> SupporterPlaces<'m> {
+    /// The support sites, the thinnest first; none by another method.
     pub fn sites(&self) -> &'m [SupportSite] {
-        if let SupporterPlaces::Sites { sites, .. } = *self.places() { sites } else { &[] }
+        if let Self::Sites { sites, .. } = *self { sites } else { &[] }
     }
 
-    /// The contact candidates; none unless it was analysed with [`Candidates::Contacts`].
+    /// The contact candidates; none by another method.
     pub fn contacts(&self) -> &'m [SupportContact] {
-        if let SupporterPlaces::Contacts { contacts, .. } = *self.places() { contacts } else { &[] }
+        if let Self::Contacts { contacts, .. } = *self { contacts } else { &[] }
     }
-
-    pub(super) fn site_counts(&self) -> sites::SupporterCounts {
-        if let SupporterPlaces::Sites { counts, .. } = *self.places() { counts } else { Default::default() }
-    }
-
-    pub(super) fn contact_counts(&self) -> contacts::SupporterCounts {
-        if let SupporterPlaces::Contacts { counts, .. } = *self.places() {
-            counts
-        } else {
-            Default::default()
-        }
-    }
-}
-
-/// What a search found.
-pub(super) struct Found<C> {
-    /// How many poses it wrote.
-    pub(super) poses: usize,
-    /// How much was left after each step.
-    pub(super) counts: C,
-    /// What became of the poses that it released.
-    pub(super) settling: SettlingCounts,
-    /// Why it ended early, if it did.
-    pub(super) stop: Option<Stop>,
 }
 
 /// How much was left after each step of a method.
@@ -239,28 +209,37 @@ pub(super) const fn search_bytes() -> usize {
     contacts::search_bytes()
 }
 
-/// Writes the best poses to `poses`, best first.
+/// Searches with the method of the params and writes the best poses to `poses`, best first. Places that another method found count
+/// as none.
 pub(super) fn search(
-    object: &Object,
-    supporter: &Supporter,
-    params: &Params,
+    scene: &Scene,
+    (object, supporter): (&ObjectPlaces, &SupporterPlaces),
     poses: &mut [HangingPose],
     arena: Arena,
     meter: &mut Meter,
 ) -> Result<Found<SearchCounts>, PredictError> {
-    Ok(match params.candidates {
+    Ok(match scene.params.candidates {
         Candidates::Sites => {
-            sites::search(object, supporter, params, poses, arena, meter)?.map(SearchCounts::Sites)
+            let mut counts = sites::Counts::default();
+            if let ObjectPlaces::Sites { counts: found, .. } = *object {
+                counts.object = found;
+            }
+            if let SupporterPlaces::Sites { counts: found, .. } = *supporter {
+                counts.supporter = found;
+            }
+            let places = (object.sites(), supporter.sites());
+            sites::search(scene, places, counts, poses, arena, meter)?.map(SearchCounts::Sites)
         }
         Candidates::Contacts => {
-            contacts::search(object, supporter, params, poses, arena, meter)?.map(SearchCounts::Contacts)
+            let mut counts = contacts::Counts::default();
+            if let ObjectPlaces::Contacts { counts: found, .. } = *object {
+                counts.object = found;
+            }
+            if let SupporterPlaces::Contacts { counts: found, .. } = *supporter {
+                counts.supporter = found;
+            }
+            let places = (object.contacts(), supporter.contacts());
+            contacts::search(scene, places, counts, poses, arena, meter)?.map(SearchCounts::Contacts)
         }
     })
-}
-
-impl<C> Found<C> {
-    fn map<D>(self, wrap: impl FnOnce(C) -> D) -> Found<D> {
-        let Self { poses, counts, settling, stop } = self;
-        Found { poses, counts: wrap(counts), settling, stop }
-    }
 }

@@ -5,25 +5,32 @@
 //! chooses between them; the other files of this folder serve any method.
 
 pub mod contacts;
+mod counts;
 mod error;
+mod found;
 mod let_go;
 mod method;
 mod object;
 mod pose;
 mod predict;
 mod rejection;
+mod samples;
+mod scene;
 mod settling;
 pub mod sites;
+mod stage;
 mod supporter;
 #[cfg(test)]
 mod tests;
 
+pub use counts::Counts;
 pub use error::{AnalysisError, PredictError};
 pub use let_go::{LetGo, let_go};
 pub use method::{ObjectPlaces, SearchCounts, SupporterPlaces};
 pub use object::Object;
 pub use pose::HangingPose;
-pub use predict::{Counts, Prediction, predict, predict_bytes};
-pub use rejection::{Rejection, Stage};
+pub use predict::{Prediction, predict, predict_bytes};
+pub use rejection::Rejection;
 pub use settling::{Rest, SettlingCounts};
+pub use stage::Stage;
 pub use supporter::{NormalCounts, Supporter};

@@ -2,6 +2,7 @@
 
 use super::AnalysisError;
 use super::method::{self, ObjectPlaces, ObjectSlots};
+use super::samples::ObjectSamples;
 use crate::geometry::{DistanceField, MassProperties, Mesh, Point, Surface, Vector};
 use crate::mechanics::Body;
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
@@ -20,17 +21,6 @@ pub struct Object<'m> {
     centre_of_mass: Point,
     work: Work,
     stopped: Option<Stop>,
-}
-
-/// Samples of an object's surface, from which a method finds places.
-pub(super) struct ObjectSamples<'a> {
-    pub(super) surface: &'a Surface<'a>,
-    /// On the surface, metres.
-    pub(super) points: &'a [Point],
-    /// Unit vectors out of the solid, one a point.
-    pub(super) normals: &'a [Vector],
-    pub(super) centre_of_mass: Point,
-    pub(super) params: &'a Params,
 }
 
 impl<'m> Object<'m> {

@@ -1,7 +1,7 @@
 //! What a prediction is made of.
 
-use super::settling::Rest;
-use super::sites::SiteMatch;
+use super::settling::rest::Rest;
+use super::sites::site_match::SiteMatch;
 use crate::geometry::Pose;
 
 /// A pose in which the object hangs.

@@ -1,7 +1,10 @@
 //! From two models to ranked poses, or the reason why there are none.
 
-use super::method::{self, Found, SearchCounts};
-use super::settling::{Settling, SettlingCounts};
+use super::counts::Counts;
+use super::found::Found;
+use super::method;
+use super::scene::Scene;
+use super::settling::Settling;
 use super::{HangingPose, Object, PredictError, Rejection, Supporter};
 use crate::memory::{Arena, Limits, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
@@ -21,15 +24,6 @@ pub struct Prediction<'p> {
     pub counts: Counts,
     /// Rays and distance queries spent on the prediction, without the analyses.
     pub work: Work,
-}
-
-/// How much was left after each step of a prediction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Counts {
-    /// Of the method's search.
-    pub search: SearchCounts,
-    /// Of the poses that were released.
-    pub settling: SettlingCounts,
 }
 
 /// Bytes of working memory for [`predict`], for a supporter within `limits`.
@@ -56,7 +50,15 @@ pub fn predict<'p>(
     params.validate()?;
     let arena = Arena::new(memory, predict_bytes(&supporter.limits()))?;
     let mut meter = Meter::new(monitor);
-    let found = method::search(object, supporter, params, poses, arena, &mut meter)?;
+    let body = object.body();
+    let scene = Scene {
+        surface: object.surface(),
+        centre_of_mass: object.centre_of_mass(),
+        body: body.as_ref(),
+        support: supporter.support(),
+        params,
+    };
+    let found = method::search(&scene, (object.places(), supporter.places()), poses, arena, &mut meter)?;
     meter.progress(1.0);
     let Found { poses: count, counts: search, settling, stop } = found;
     let counts = Counts { search, settling };

@@ -1,6 +1,7 @@
 //! Why nothing hangs.
 
-use super::{Counts, SettlingCounts};
+use super::counts::Counts;
+use super::stage::Stage;
 
 /// Why nothing hangs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,80 +10,4 @@ pub struct Rejection {
     pub stage: Stage,
     /// How much was left after each step.
     pub counts: Counts,
-}
-
-/// The step that left nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
-pub enum Stage {
-    /// Nowhere does the object's surface face its centre of mass, or only in specks: eqs. (3) and (4).
-    NoContactPoints,
-    /// No contact point has free space below it for a supporter.
-    NoFreeSpace,
-    /// The free spaces are open to the side, so that a supporter would slip out: eq. (6).
-    NotEncircled,
-    /// Nothing on the supporter faces up and holds together: section II-C.
-    NoSupport,
-    /// The supporter is too thick for every free space of the object.
-    TooThick,
-    /// Every pose runs the supporter through the object.
-    AllCollide,
-    /// Most released poses rotate and fall off.
-    RotatesOff,
-    /// Most released poses slide off or fall through.
-    SlidesOff,
-    /// Most released poses do not come to rest in time.
-    NeverRests,
-    /// Released poses come to rest, but too loosely to be given, or wedged, or with no room for a release pose near by.
-    TooLoose,
-}
-
-impl core::fmt::Display for Stage {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NoContactPoints => {
-                "the object has no surface that faces its centre of mass and could rest on a support"
-            }
-            Self::NoFreeSpace => "the object has no free space for a supporter beside its contact points",
-            Self::NotEncircled => {
-                "the object encloses none of its free spaces, so a supporter would slip out"
-            }
-            Self::NoSupport => "the supporter has no part that faces up",
-            Self::TooThick => {
-                "every part of the supporter that faces up is too thick for the object's free spaces"
-            }
-            Self::AllCollide => "in every pose the supporter penetrates the object",
-            Self::RotatesOff => "no released pose stays: most often the object rotates off",
-            Self::SlidesOff => "no released pose stays: most often the object slides off or falls through",
-            Self::NeverRests => "no released pose stays: most often the object is still moving when the time is up",
-            Self::TooLoose => "no released pose stays: most often the object is wedged where it rests, or a small disturbance brings it down",
-        })
-    }
-}
-
-impl Counts {
-    /// The first step that left nothing. With `settle` the poses that were released count, too.
-    pub(super) fn empty_stage(&self, settle: bool) -> Option<Stage> {
-        let empty = self.search.empty_stage();
-        if empty.is_some() || !settle || self.settling.probable > 0 {
-            empty
-        } else {
-            Some(self.settling.failure())
-        }
-    }
-}
-
-impl SettlingCounts {
-    /// The most frequent way in which released poses failed.
-    fn failure(&self) -> Stage {
-        let fates = [
-            (self.at_rest, Stage::TooLoose),
-            (self.rotated_off, Stage::RotatesOff),
-            (self.slid_off, Stage::SlidesOff),
-            (self.moving, Stage::NeverRests),
-        ];
-        // Of equally frequent ones the first.
-        let most = fates.iter().rev().max_by_key(|(count, _)| *count).filter(|(count, _)| *count > 0);
-        most.map_or(Stage::AllCollide, |(_, stage)| *stage)
-    }
 }

@@ -2,7 +2,8 @@
 
 use super::AnalysisError;
 use super::method::{self, SupporterPlaces, SupporterSlots};
-use crate::geometry::{Cloud, Point, PointTree, Vector};
+use super::samples::SupporterCloud;
+use crate::geometry::{Cloud, PointTree, Vector};
 use crate::mechanics::{Room, Support};
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
@@ -23,16 +24,6 @@ pub struct Supporter<'m> {
     normals: NormalCounts,
     work: Work,
     stopped: Option<Stop>,
-}
-
-/// The points of a supporter, on which a method finds places.
-pub(super) struct SupporterCloud<'a> {
-    pub(super) tree: &'a PointTree<'a>,
-    /// In the caller's order, metres.
-    pub(super) points: &'a [Point],
-    /// Unit vectors out of the solid, in tree order.
-    pub(super) normals: &'a [Vector],
-    pub(super) params: &'a Params,
 }
 
 /// What had to be done to the normals.

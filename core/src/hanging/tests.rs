@@ -113,8 +113,8 @@ fn a_torus_gives_its_hole() {
     let scene = Scene::ring_on_peg(0.0);
     for params in [fast(), Params::paper()] {
         scene.analyse(&params, &Monitor::new(), |object, _| {
-            assert!(!object.sites().is_empty());
-            for site in object.sites() {
+            assert!(!object.places().sites().is_empty());
+            for site in object.places().sites() {
                 // The hole's radius is 26 mm. The best of ten steps across it is an eighteenth of its diameter
                 // off the centre, which makes its free space that much smaller; samples are 1 mm apart.
                 let step = 0.052 / 18.0;
@@ -132,8 +132,8 @@ fn a_straight_peg_gives_its_axis() {
     for yaw in [0.0_f32, 0.3, 1.0, 2.2] {
         let scene = Scene::ring_on_peg(yaw);
         scene.analyse(&fast(), &Monitor::new(), |_, supporter| {
-            assert!(supporter.sites().len() > 3);
-            for site in supporter.sites() {
+            assert!(supporter.places().sites().len() > 3);
+            for site in supporter.places().sites() {
                 // Slices are tried every 9 degrees, and next to the right one may look as thin by chance.
                 let axis = Vector::new(yaw.cos(), yaw.sin(), 0.0);
                 assert!(degrees_between_lines(&site.hanging_direction, &axis) < 9.0, "{yaw}: {site:?}");
@@ -307,7 +307,7 @@ fn memory_of_every_size_gives_the_error_or_the_model() {
     for offset in 0..17 {
         memory.fill(offset as u8);
         let object = Object::analyze(&mesh, &params, &mut memory[offset..offset + needed[0]], &monitor);
-        sites.push(object.unwrap().sites().to_vec());
+        sites.push(object.unwrap().places().sites().to_vec());
         memory.fill(!offset as u8);
         Supporter::analyze(&cloud, &params, &mut memory[offset..offset + needed[1]], &monitor).unwrap();
     }

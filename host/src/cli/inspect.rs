@@ -47,8 +47,8 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
         mass: *object.mass(),
         centre_of_mass: object.centre_of_mass().into(),
         counts: object.places().into(),
-        sites: json::sites(object.sites()),
-        contacts: object.contacts(),
+        sites: json::sites(object.places().sites()),
+        contacts: object.places().contacts(),
         seconds,
     };
     if arguments.json {
@@ -83,10 +83,10 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
             counts.contact_points, counts.contacts
         ),
     };
-    if !object.contacts().is_empty() {
+    if !object.places().contacts().is_empty() {
         text += "index  position, mm               bar direction        capture depth, mm\n";
     }
-    for (index, contact) in object.contacts().iter().enumerate().take(SHOWN) {
+    for (index, contact) in object.places().contacts().iter().enumerate().take(SHOWN) {
         text += &format!(
             "{index:5}  {}  {}  {:15.1}\n",
             millimetres(&contact.position.coords),
@@ -94,10 +94,10 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
             contact.capture * 1000.0,
         );
     }
-    if !object.sites().is_empty() {
+    if !object.places().sites().is_empty() {
         text += "site  position, mm               hanging direction      free space, mm  encircled  points\n";
     }
-    for (index, site) in object.sites().iter().enumerate() {
+    for (index, site) in object.places().sites().iter().enumerate() {
         text += &format!(
             "{index:4}  {}  {}  {:14.1}  {:9.2}  {:6}\n",
             millimetres(&site.position.coords),
@@ -131,8 +131,8 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
         normals_estimated: supporter.normals().estimated,
         normals_renormalised: supporter.normals().renormalised,
         counts: supporter.places().into(),
-        sites: json::sites(supporter.sites()),
-        contacts: supporter.contacts(),
+        sites: json::sites(supporter.places().sites()),
+        contacts: supporter.places().contacts(),
         seconds,
     };
     if arguments.json {
@@ -156,20 +156,20 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
             )
         }
     };
-    if !supporter.contacts().is_empty() {
+    if !supporter.places().contacts().is_empty() {
         text += "index  position, mm               bar direction\n";
     }
-    for (index, contact) in supporter.contacts().iter().enumerate().take(SHOWN) {
+    for (index, contact) in supporter.places().contacts().iter().enumerate().take(SHOWN) {
         text += &format!(
             "{index:5}  {}  {}\n",
             millimetres(&contact.position.coords),
             direction(&contact.bar_direction)
         );
     }
-    if !supporter.sites().is_empty() {
+    if !supporter.places().sites().is_empty() {
         text += "site  position, mm               hanging direction      radius, mm  to the boundary, mm\n";
     }
-    for (index, site) in supporter.sites().iter().enumerate() {
+    for (index, site) in supporter.places().sites().iter().enumerate() {
         let [d1, d2] = site.boundary_distances.map(|d| d * 1000.0);
         text += &format!(
             "{index:4}  {}  {}  {:10.1}  {d1:8.1}  {d2:8.1}\n",

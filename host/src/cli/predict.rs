@@ -88,14 +88,22 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
             schema: json::SCHEMA,
             poses: (1..)
                 .zip(prediction.poses)
-                .map(|(rank, pose)| Pose::new(rank, pose, object.sites(), supporter.sites()))
+                .map(|(rank, pose)| {
+                    Pose::new(rank, pose, object.places().sites(), supporter.places().sites())
+                })
                 .collect(),
             rejection: prediction.rejection.as_ref().map(Reason::from),
             stats: Stats {
                 seconds,
                 memory_bytes,
-                sites: PerPart { object: object.sites().len(), supporter: supporter.sites().len() },
-                contacts: PerPart { object: object.contacts().len(), supporter: supporter.contacts().len() },
+                sites: PerPart {
+                    object: object.places().sites().len(),
+                    supporter: supporter.places().sites().len(),
+                },
+                contacts: PerPart {
+                    object: object.places().contacts().len(),
+                    supporter: supporter.places().contacts().len(),
+                },
                 counts: (&prediction.counts).into(),
             },
             params,
@@ -136,10 +144,10 @@ fn table(prediction: &hanging::Prediction, mesh: &Mesh, object: &Object, support
         mesh.triangles().len(),
         closedness(object.mass()),
         size(&mesh.aabb()),
-        candidates(object.sites().len(), "hanging sites", object.contacts().len()),
+        candidates(object.places().sites().len(), "hanging sites", object.places().contacts().len()),
         supporter.points().points().len(),
         size(&supporter.points().aabb()),
-        candidates(supporter.sites().len(), "support sites", supporter.contacts().len()),
+        candidates(supporter.places().sites().len(), "support sites", supporter.places().contacts().len()),
     );
     if let Some(rejection) = &prediction.rejection {
         text += &format!("nothing hangs: {}\n", rejection.stage);
@@ -156,8 +164,8 @@ fn table(prediction: &hanging::Prediction, mesh: &Mesh, object: &Object, support
     for (rank, pose) in (1..).zip(prediction.poses) {
         if let Some(SiteMatch { cost, object_site, support_site, .. }) = &pose.matched {
             let Cost { collision, boundary, contact_area, total } = cost;
-            let on = point(&supporter.sites()[*support_site as usize].position);
-            let with = point(&object.sites()[*object_site as usize].position);
+            let on = point(&supporter.places().sites()[*support_site as usize].position);
+            let with = point(&object.places().sites()[*object_site as usize].position);
             text += &format!(
                 "{rank:4} {total:8.3} {collision:10} {boundary:9.3} {contact_area:13.3} {on} {with}\n"
             );

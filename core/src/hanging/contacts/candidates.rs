@@ -2,6 +2,7 @@
 //! made one at a time, the highest score first.
 
 use super::constants::*;
+use super::counts::CandidateCounts;
 use super::object_contact::ObjectContact;
 use super::support_contact::SupportContact;
 use crate::geometry::{Point, Pose, Vector, any_perpendicular, unit_or};
@@ -11,15 +12,6 @@ use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
 use nalgebra::{Matrix3, Quaternion, Rotation3, Translation3, UnitQuaternion};
-
-/// How many poses were left after each step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct CandidateCounts {
-    /// Poses that lay a contact of the object on one of the supporter.
-    pub made: usize,
-    /// Those that are clear of the supporter, some after being pushed off it.
-    pub clear: usize,
-}
 
 /// A pose that is clear of the supporter.
 #[derive(Clone, Copy, Debug)]

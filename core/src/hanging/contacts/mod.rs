@@ -11,63 +11,21 @@
 
 mod candidates;
 mod constants;
+mod counts;
 mod object_contact;
 mod search;
 mod support_contact;
 
-pub use candidates::CandidateCounts;
+pub use counts::{CandidateCounts, Counts, ObjectCounts, SupporterCounts};
 pub use object_contact::ObjectContact;
 pub(super) use search::search;
 pub use support_contact::SupportContact;
 
-use super::Stage;
-use super::object::ObjectSamples;
-use super::supporter::SupporterCloud;
+use super::samples::{ObjectSamples, SupporterCloud};
 use crate::geometry::{Mesh, Point, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
 use crate::perception::sampling;
-
-/// How much was left on the object after each step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ObjectCounts {
-    /// Samples whose normal leans towards the centre of mass.
-    pub contact_points: usize,
-    /// Contact candidates among them.
-    pub contacts: usize,
-}
-
-/// How much was left on the supporter after each step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SupporterCounts {
-    /// Points whose normal leans upwards.
-    pub contact_points: usize,
-    /// Contact candidates among them.
-    pub contacts: usize,
-}
-
-/// How much was left after each step of the method.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// On the object.
-    pub object: ObjectCounts,
-    /// On the supporter.
-    pub supporter: SupporterCounts,
-    /// Of the poses that lay a contact of the object on one of the supporter.
-    pub candidates: CandidateCounts,
-}
-
-impl Counts {
-    /// The first step that left nothing.
-    pub(super) fn empty_stage(&self) -> Option<Stage> {
-        let steps = [
-            (self.object.contacts, Stage::NoContactPoints),
-            (self.supporter.contacts, Stage::NoSupport),
-            (self.candidates.clear, Stage::AllCollide),
-        ];
-        steps.iter().find(|(left, _)| *left == 0).map(|(_, stage)| *stage)
-    }
-}
 
 /// Bytes of the contacts of an object.
 pub(super) const fn object_bytes() -> usize {

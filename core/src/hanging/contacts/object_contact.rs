@@ -1,9 +1,9 @@
 //! Contact candidates of the object: points of its surface that face down when it hangs from them.
 
-use super::ObjectCounts;
 use super::constants::*;
+use super::counts::ObjectCounts;
 use crate::geometry::{Point, Vector, any_perpendicular, rotate_about, unit_or};
-use crate::hanging::object::ObjectSamples;
+use crate::hanging::samples::ObjectSamples;
 use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
 

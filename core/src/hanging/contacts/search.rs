@@ -1,42 +1,40 @@
 //! Releases candidates, the most promising first, until enough of them hang.
 
-use super::Counts;
 use super::candidates::CandidateSearch;
 use super::constants::{ATTEMPT_DIVISOR, REST_SHARE};
+use super::counts::Counts;
+use super::object_contact::ObjectContact;
+use super::support_contact::SupportContact;
 use crate::best::Best;
-use crate::hanging::method::Found;
+use crate::hanging::error::PredictError;
+use crate::hanging::found::Found;
+use crate::hanging::pose::HangingPose;
+use crate::hanging::scene::Scene;
 use crate::hanging::settling::Settling;
-use crate::hanging::{HangingPose, Object, PredictError, Supporter};
 use crate::memory::Arena;
 use crate::monitor::{Meter, Stop};
-use crate::params::Params;
 
-/// Writes the best poses to `poses`: with [`Params::settle`] those that stay when released, otherwise the candidates as they are
+/// Writes the best poses to `poses`: with [`Params::settle`](crate::Params::settle) those that stay when released, otherwise the candidates as they are
 /// made.
 pub(in crate::hanging) fn search(
-    object: &Object,
-    supporter: &Supporter,
-    params: &Params,
+    scene: &Scene,
+    (contacts, places): (&[ObjectContact], &[SupportContact]),
+    counts: Counts,
     poses: &mut [HangingPose],
     arena: Arena,
     meter: &mut Meter,
 ) -> Result<Found<Counts>, PredictError> {
-    let body = object.body().ok_or(PredictError::NoDistanceField)?;
-    let scene = (&body, supporter.support());
+    // Moved, so that its memory is borrowed for no longer than the scene.
     let mut arena = arena;
-    let mut settling = Settling::new(scene, params, &mut arena)?;
-    let mut candidates =
-        CandidateSearch::new(scene, object.contacts(), supporter.contacts(), params.up(), &mut arena)?;
+    let mut settling = Settling::new(scene, &mut arena)?;
+    let (bodies, up) = ((settling.body, settling.support), scene.params.up());
+    let mut candidates = CandidateSearch::new(bodies, contacts, places, up, &mut arena)?;
     let mut best = Best::new(poses);
-    let searched = match params.settle {
+    let searched = match scene.params.settle {
         true => release(&mut candidates, &mut settling, &mut best, meter),
         false => list(&mut candidates, &mut best, meter),
     };
-    let counts = Counts {
-        object: object.contact_counts(),
-        supporter: supporter.contact_counts(),
-        candidates: candidates.counts,
-    };
+    let counts = Counts { candidates: candidates.counts, ..counts };
     Ok(Found { poses: best.len(), counts, settling: settling.counts, stop: searched.err() })
 }
 

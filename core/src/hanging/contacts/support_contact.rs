@@ -1,7 +1,7 @@
 //! Contact candidates of the supporter: points that face up.
 
-use super::SupporterCounts;
 use super::constants::*;
+use super::counts::SupporterCounts;
 use crate::geometry::{Point, PointTree, Vector};
 use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};

@@ -1,17 +1,19 @@
 //! Releases poses under gravity: which of them come to rest, and how firmly. Serves any method.
 
 mod probability;
-mod rest;
+pub(super) mod rest;
 
 pub use rest::Rest;
 
-use super::HangingPose;
+use super::error::PredictError;
+use super::pose::HangingPose;
+use super::scene::Scene;
 use crate::best::Best;
 use crate::geometry::Pose;
 use crate::mechanics::{
     Body, Fate, Settings, Settled, Sleep, Support, comes_free, firmness, is_off_surface, release_pose, settle,
 };
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
 
@@ -78,11 +80,9 @@ struct Release {
 
 impl<'a> Settling<'a> {
     /// Takes working memory, of [`bytes`](Self::bytes), from `arena`.
-    pub(super) fn new(
-        (body, support): (&'a Body<'a>, &'a Support<'a>),
-        params: &'a Params,
-        arena: &mut Arena<'a>,
-    ) -> Result<Self, OutOfMemory> {
+    pub(super) fn new(scene: &Scene<'a>, arena: &mut Arena<'a>) -> Result<Self, PredictError> {
+        let Scene { support, params, .. } = *scene;
+        let body = scene.body.ok_or(PredictError::NoDistanceField)?;
         let sleeps = arena.slice::<Sleep>(Support::sleepers(support.tree.points().len()))?;
         Ok(Self { body, support, params, sleeps, counts: SettlingCounts::default() })
     }

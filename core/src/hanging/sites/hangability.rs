@@ -3,7 +3,7 @@
 use super::clusters::Clusters;
 use crate::best::Best;
 use crate::geometry::{Point, PointTree, Vector, any_perpendicular, rotate_about, unit_or};
-use crate::hanging::object::ObjectSamples;
+use crate::hanging::samples::ObjectSamples;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
 use crate::params::{MAX_DIRECTIONS, Params};

@@ -1,11 +1,12 @@
 //! Which object site fits on which support site, and how: section II-D.
 
+use super::site_match::SiteMatch;
 use super::{Cost, HangingSite, SupportSite};
 use crate::best::Best;
 use crate::geometry::{Point, PointTree, Pose, Surface, Vector, any_perpendicular, unit_or};
-use crate::hanging::{HangingPose, Object, Supporter};
+use crate::hanging::pose::HangingPose;
+use crate::hanging::scene::Scene;
 use crate::monitor::{Meter, Stop};
-use crate::params::Params;
 use nalgebra::{Matrix3, Rotation3, Translation3, UnitQuaternion};
 
 /// How much was left of the pairs after each step.
@@ -20,56 +21,35 @@ pub struct MatchingCounts {
     pub clear: usize,
 }
 
-/// An object site on a support site: section II-D.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SiteMatch {
-    /// What it costs.
-    pub cost: Cost,
-    /// Index among [`Object::sites`](crate::hanging::Object::sites).
-    pub object_site: u32,
-    /// Index among [`Supporter::sites`](crate::hanging::Supporter::sites).
-    pub support_site: u32,
-    /// Whether the object's hanging direction is laid against the supporter's instead of along it.
-    pub is_reversed: bool,
-}
-
-impl SiteMatch {
-    /// The order of the ranking: by total cost, then by sites, so that it is the same however it is computed.
-    fn is_better(&self, other: &Self) -> bool {
-        let sites = |m: &Self| (m.support_site, m.object_site, m.is_reversed);
-        self.cost.total.total_cmp(&other.cost.total).then(sites(self).cmp(&sites(other))).is_lt()
-    }
-}
-
 /// Tries all pairs of sites and offers their poses to `poses`.
 pub(super) fn match_sites(
-    object: &Object,
-    supporter: &Supporter,
-    params: &Params,
+    scene: &Scene,
+    (hanging_sites, support_sites): (&[HangingSite], &[SupportSite]),
     poses: &mut Best<HangingPose>,
     meter: &mut Meter,
 ) -> (MatchingCounts, Option<Stop>) {
+    let Scene { surface, centre_of_mass, params, .. } = *scene;
+    let points = &scene.support.tree;
     let mut counts =
-        MatchingCounts { pairs: object.sites().len() * supporter.sites().len(), ..Default::default() };
-    let most_contact_points = object.sites().iter().map(|site| site.contact_points).max().unwrap_or(0);
-    let points = supporter.points().points().len();
+        MatchingCounts { pairs: hanging_sites.len() * support_sites.len(), ..Default::default() };
+    let most_contact_points = hanging_sites.iter().map(|site| site.contact_points).max().unwrap_or(0);
     // No more than every point, and past `u32` there are none: see `mesh::MAX_COUNT`.
-    let allowed = (params.max_collision * points as f32) as u32;
-    for (j, support) in supporter.sites().iter().enumerate() {
-        meter.progress(j as f32 / supporter.sites().len() as f32);
-        for (i, site) in object.sites().iter().enumerate() {
+    let allowed = (params.max_collision * points.points().len() as f32) as u32;
+    for (j, support) in support_sites.iter().enumerate() {
+        meter.progress(j as f32 / support_sites.len() as f32);
+        for (i, site) in hanging_sites.iter().enumerate() {
             if site.free_space_radius < params.radius_ratio * support.support_radius {
                 continue;
             }
             counts.fitting += 1;
             let cost = Cost::without_collision(site, most_contact_points, support, params);
             for is_reversed in [false, true] {
-                let pose = align(site, object.centre_of_mass(), support, params.up(), is_reversed);
+                let pose = align(site, centre_of_mass, support, params.up(), is_reversed);
                 let worst = poses.next_to_go().and_then(|worst| worst.matched);
                 let outranked =
                     worst.map_or(u32::MAX, |worst| cost.collisions_up_to(worst.cost.total, params));
                 let most = allowed.min(outranked);
-                match count_collisions(object.surface(), supporter.points(), &pose, most, meter) {
+                match count_collisions(surface, points, &pose, most, meter) {
                     Ok(Some(collision)) => {
                         counts.clear += 1;
                         let cost = cost.with_collision(collision, params);

@@ -12,23 +12,26 @@ mod clusters;
 mod cost;
 mod hangability;
 mod matching;
+pub(super) mod site_match;
 mod supportability;
 
 pub use cost::Cost;
 pub use hangability::{HangingSite, ObjectCounts};
-pub use matching::{MatchingCounts, SiteMatch};
+pub use matching::MatchingCounts;
+pub use site_match::SiteMatch;
 pub use supportability::{SupportSite, SupporterCounts};
 
-use super::method::Found;
-use super::object::ObjectSamples;
+use super::error::PredictError;
+use super::found::Found;
+use super::pose::HangingPose;
+use super::samples::{ObjectSamples, SupporterCloud};
+use super::scene::Scene;
 use super::settling::{Settling, SettlingCounts};
-use super::supporter::SupporterCloud;
-use super::{HangingPose, Object, PredictError, Stage, Supporter};
+use super::stage::Stage;
 use crate::best::Best;
 use crate::geometry::{Mesh, Point, PointTree, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
 use crate::monitor::{Meter, Stop};
-use crate::params::Params;
 use crate::perception::sampling;
 use hangability::Hangability;
 use supportability::Supportability;
@@ -128,30 +131,28 @@ pub(super) fn find_on_supporter(
 }
 
 /// Matches every hanging site with every support site and writes the best poses to `poses`; with [`Params::settle`] those of
-/// them that stay when released.
+/// them that stay when released. `counts` are those of the places.
 pub(super) fn search(
-    object: &Object,
-    supporter: &Supporter,
-    params: &Params,
+    scene: &Scene,
+    places: (&[HangingSite], &[SupportSite]),
+    counts: Counts,
     poses: &mut [HangingPose],
     arena: Arena,
     meter: &mut Meter,
 ) -> Result<Found<Counts>, PredictError> {
-    let body = object.body();
+    // Moved, so that its memory is borrowed for no longer than the scene.
     let mut arena = arena;
-    let mut settling = match (params.settle, &body) {
-        (false, _) => None,
-        (true, None) => return Err(PredictError::NoDistanceField),
-        (true, Some(body)) => Some(Settling::new((body, supporter.support()), params, &mut arena)?),
+    let mut settling = match scene.params.settle {
+        true => Some(Settling::new(scene, &mut arena)?),
+        false => None,
     };
     let mut best = Best::new(poses);
-    let (matching, stop) = matching::match_sites(object, supporter, params, &mut best, meter);
+    let (matching, stop) = matching::match_sites(scene, places, &mut best, meter);
     let matched = best.into_slice();
     let (poses, settled) = match &mut settling {
         Some(settling) => settling.sieve(matched, meter),
         None => (matched.len(), Ok(())),
     };
-    let counts = Counts { object: object.site_counts(), supporter: supporter.site_counts(), matching };
     let settling = settling.map_or(SettlingCounts::default(), |settling| settling.counts);
-    Ok(Found { poses, counts, settling, stop: stop.or(settled.err()) })
+    Ok(Found { poses, counts: Counts { matching, ..counts }, settling, stop: stop.or(settled.err()) })
 }

@@ -1,0 +1,41 @@
+//! How much was left after each step of a prediction.
+
+use super::method::SearchCounts;
+use super::settling::SettlingCounts;
+use super::stage::Stage;
+
+/// How much was left after each step of a prediction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// Of the method's search.
+    pub search: SearchCounts,
+    /// Of the poses that were released.
+    pub settling: SettlingCounts,
+}
+
+impl Counts {
+    /// The first step that left nothing. With `settle` the poses that were released count, too.
+    pub(super) fn empty_stage(&self, settle: bool) -> Option<Stage> {
+        let empty = self.search.empty_stage();
+        if empty.is_some() || !settle || self.settling.probable > 0 {
+            empty
+        } else {
+            Some(self.settling.failure())
+        }
+    }
+}
+
+impl SettlingCounts {
+    /// The most frequent way in which released poses failed.
+    fn failure(&self) -> Stage {
+        let fates = [
+            (self.at_rest, Stage::TooLoose),
+            (self.rotated_off, Stage::RotatesOff),
+            (self.slid_off, Stage::SlidesOff),
+            (self.moving, Stage::NeverRests),
+        ];
+        // Of equally frequent ones the first.
+        let most = fates.iter().rev().max_by_key(|(count, _)| *count).filter(|(count, _)| *count > 0);
+        most.map_or(Stage::AllCollide, |(_, stage)| *stage)
+    }
+}

@@ -1,0 +1,19 @@
+//! What a method's search knows of the object and the supporter, beside the places on them.
+
+use crate::geometry::{Point, Surface};
+use crate::mechanics::{Body, Support};
+use crate::params::Params;
+
+/// An object and a supporter, and the constants of the search.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a> {
+    /// Surface of the object.
+    pub(super) surface: &'a Surface<'a>,
+    /// Of the object, metres.
+    pub(super) centre_of_mass: Point,
+    /// The object as mechanics sees it; `None` if it was analysed without voxels.
+    pub(super) body: Option<&'a Body<'a>>,
+    /// The supporter as mechanics sees it, with its points.
+    pub(super) support: &'a Support<'a>,
+    pub(super) params: &'a Params,
+}

@@ -1,0 +1,50 @@
+//! The step of a prediction that left nothing.
+
+/// The step that left nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
+pub enum Stage {
+    /// Nowhere does the object's surface face its centre of mass, or only in specks: eqs. (3) and (4).
+    NoContactPoints,
+    /// No contact point has free space below it for a supporter.
+    NoFreeSpace,
+    /// The free spaces are open to the side, so that a supporter would slip out: eq. (6).
+    NotEncircled,
+    /// Nothing on the supporter faces up and holds together: section II-C.
+    NoSupport,
+    /// The supporter is too thick for every free space of the object.
+    TooThick,
+    /// Every pose runs the supporter through the object.
+    AllCollide,
+    /// Most released poses rotate and fall off.
+    RotatesOff,
+    /// Most released poses slide off or fall through.
+    SlidesOff,
+    /// Most released poses do not come to rest in time.
+    NeverRests,
+    /// Released poses come to rest, but too loosely to be given, or wedged, or with no room for a release pose near by.
+    TooLoose,
+}
+
+impl core::fmt::Display for Stage {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::NoContactPoints => {
+                "the object has no surface that faces its centre of mass and could rest on a support"
+            }
+            Self::NoFreeSpace => "the object has no free space for a supporter beside its contact points",
+            Self::NotEncircled => {
+                "the object encloses none of its free spaces, so a supporter would slip out"
+            }
+            Self::NoSupport => "the supporter has no part that faces up",
+            Self::TooThick => {
+                "every part of the supporter that faces up is too thick for the object's free spaces"
+            }
+            Self::AllCollide => "in every pose the supporter penetrates the object",
+            Self::RotatesOff => "no released pose stays: most often the object rotates off",
+            Self::SlidesOff => "no released pose stays: most often the object slides off or falls through",
+            Self::NeverRests => "no released pose stays: most often the object is still moving when the time is up",
+            Self::TooLoose => "no released pose stays: most often the object is wedged where it rests, or a small disturbance brings it down",
+        })
+    }
+}
