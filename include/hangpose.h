@@ -106,7 +106,8 @@ typedef uint32_t hangpose_centre_of_mass;
 // Source of the candidate poses, one of HANGPOSE_CANDIDATES_*.
 typedef uint32_t hangpose_candidates;
 
-// The constants of the method, with the symbols of the paper. Set the struct with hangpose_params_init, then
+// The constants of the method, with the symbols of the paper. The time step (0.004 s), the settle time (3 s) and the
+// rest speed (0.005 m/s) of the simulation cannot be changed through this interface. Set the struct with hangpose_params_init, then
 // change single fields. Every call that takes it checks each field against its range, which stands at the end of
 // the comment of the field.
 typedef struct hangpose_params {
@@ -240,12 +241,13 @@ typedef struct hangpose_cloud {
   uint32_t point_count;
   // Array of point_count rows of x, y, z: metres, in supporter coordinates, each within +-1,000,000.
   const float *points;
-  // Array of point_count rows of x, y, z: normals that point out of the solid, of any length. A row of zeros
-  // marks an unknown normal. May be null: no normal is known. Unknown normals are estimated; they follow the
+  // Array of point_count rows of x, y, z: normals that point out of the solid, of any length. Normals that
+  // point into the solid, or whose signs disagree with each other, are reversed. A row of zeros marks an unknown normal. May be null: no normal is known. Unknown normals are estimated; they follow the
   // known normals around them.
   const float *normals;
   // x, y, z of the sensor position, metres, in supporter coordinates: if no normal is known, the estimated
-  // normals face it. May be null: they are then oriented from point to point, starting with up at the top.
+  // normals face it. May be null: they are then oriented from point to point, and the pieces of the
+  // cloud vote on their outside with the surfaces opposite to them.
   const float *viewpoint;
 } hangpose_cloud;
 
@@ -417,22 +419,22 @@ typedef struct hangpose_supporter_contact {
 
 // Stability margins of a rest pose. Part of hangpose_pose.
 typedef struct hangpose_margin {
-  // Tilt of gravity, radians, that the object survives in each of eight horizontal directions, with 70 % of the
-  // friction. The first direction is the supporter's x axis, made perpendicular to gravity (the y axis if
+  // Tilt of gravity at which the object last touched the supporter before it left, radians, in each of eight
+  // horizontal directions, with 70 % of the friction; larger than the static limit, because leaving takes time. The first direction is the supporter's x axis, made perpendicular to gravity (the y axis if
   // gravity is along x); the others follow counter-clockwise seen from above. At most 1.2, where the test ends;
-  // 0 for directions that were not tried because the tilt in another direction is hopeless.
+  // 0 for directions that were not tried because the tilt in an earlier one is too small for the pose to be of use.
   float tilts[HANGPOSE_DIRECTIONS];
   // Least of the tilts, radians.
   float least_tilt;
   // Time that the object stays, seconds, after gravity tilts by 21.8 degrees at once in the direction of the
   // least tilt, while only friction damps its swing. 1 if it is still there after 1 s; 0 if the test was skipped
-  // because the tilt in some direction is hopeless.
+  // because the tilt in some direction is too small.
   float jolt_time;
   // Greatest distance that the centre of mass sank, metres, while gravity tilted by up to 0.9 radians. An object
   // that settles deeper when it is shaken does not rest firmly.
   float tilted_sinking;
-  // Least rise of the centre of mass, metres, over the escape paths that were found; the greatest rise seen if
-  // no escape was found.
+  // Least rise of the centre of mass, metres, over the escape paths that were found, an upper bound of the true
+  // least; the greatest rise seen if no escape was found, which bounds nothing.
   float escape_rise;
   // escape_rise divided by the distance from the contacts to the centre of mass; no unit.
   float escape_ratio;
@@ -529,7 +531,7 @@ typedef struct hangpose_prediction {
   uint32_t settling_rotated_off;
   // Number of releases after which the object slid off or fell through.
   uint32_t settling_slid_off;
-  // Number of releases after which the object still moved after 3 s.
+  // Number of releases after which the object still moved after 3 s, the settle time.
   uint32_t settling_moving;
   // Number of releases after which the object came to rest.
   uint32_t settling_at_rest;

@@ -1,7 +1,7 @@
 //! Where and how to hang an object that a robot has never seen on a supporter that it has never seen.
 //!
 //! The core of hangpose: no heap, no operating system, no training data, no `unsafe`. All memory is the
-//! caller's; everything is `f32` in SI units, and the same inputs give the same bytes on every machine.
+//! caller's; inputs and outputs are `f32` in SI units, and the same inputs give the same bytes on every machine.
 //!
 //! Data flows one way:
 //!

@@ -100,19 +100,18 @@ pub struct Params {
     /// Coulomb's coefficient of friction between object and supporter.
     pub friction: f32,
     /// Distance between object and supporter at the release pose, metres; less where the opening is narrower.
+    /// Below 0.0001 every release pose is discarded.
     pub clearance: f32,
-    /// Time step of the simulation, seconds, 0.0005 to 0.005. A smaller step takes more time in proportion. A
-    /// larger one is less exact: the contacts of a body at rest must be found at gaps of up to 1.4 mm at
-    /// 0.005 s, instead of 1.0 mm at the default, 0.004 s, and the distance field is exact only up to about a
-    /// voxel. The probability is fitted to poses that were found with the default.
+    /// Time step of the simulation, seconds, 0.0005 to 0.005, default 0.004. The run time grows as its inverse.
+    /// Keep the default unless you study the simulation: the probability was fitted with it.
     pub time_step: f32,
     /// Time that a released object has to come to rest or fall, seconds, 0.1 to 60. An object that does
-    /// neither is still moving and no pose. Objects that swing or slide for long may need more.
+    /// neither in this time is rejected as still moving. Objects that swing or slide for long may need more.
     /// [`let_go`](crate::hanging::let_go) has its own limit of four seconds.
     pub settle_time: f32,
     /// Speed below which an object in contact is at rest, m/s, 0.0001 to 0.1: no point of it moves faster,
-    /// averaged over 80 ms. A larger value ends simulations earlier, and a slow slide passes for rest; with a
-    /// smaller one, an object that rocks or creeps is still moving.
+    /// averaged over 80 ms. A larger value ends simulations earlier, but may classify a slow slide as rest. With a
+    /// smaller one, an object that rocks or creeps counts as still moving.
     pub rest_speed: f32,
     /// Maximum number of nodes of the object's signed distance field. A node takes two bytes, and the index
     /// of the field as much again.

@@ -12,12 +12,13 @@ pub struct hangpose_cloud {
     pub point_count: u32,
     /// Array of point_count rows of x, y, z: metres, in supporter coordinates, each within +-1,000,000.
     pub points: *const f32,
-    /// Array of point_count rows of x, y, z: normals that point out of the solid, of any length. A row of zeros
-    /// marks an unknown normal. May be null: no normal is known. Unknown normals are estimated; they follow the
+    /// Array of point_count rows of x, y, z: normals that point out of the solid, of any length. Normals that
+    /// point into the solid, or whose signs disagree with each other, are reversed. A row of zeros marks an unknown normal. May be null: no normal is known. Unknown normals are estimated; they follow the
     /// known normals around them.
     pub normals: *const f32,
     /// x, y, z of the sensor position, metres, in supporter coordinates: if no normal is known, the estimated
-    /// normals face it. May be null: they are then oriented from point to point, starting with up at the top.
+    /// normals face it. May be null: they are then oriented from point to point, and the pieces of the
+    /// cloud vote on their outside with the surfaces opposite to them.
     pub viewpoint: *const f32,
 }
 

@@ -31,7 +31,8 @@ pub const HANGPOSE_CANDIDATES_SITES: hangpose_candidates = 0;
 /// Every contact candidate of the object on every contact candidate of the supporter.
 pub const HANGPOSE_CANDIDATES_CONTACTS: hangpose_candidates = 1;
 
-/// The constants of the method, with the symbols of the paper. Set the struct with hangpose_params_init, then
+/// The constants of the method, with the symbols of the paper. The time step (0.004 s), the settle time (3 s) and the
+/// rest speed (0.005 m/s) of the simulation cannot be changed through this interface. Set the struct with hangpose_params_init, then
 /// change single fields. Every call that takes it checks each field against its range, which stands at the end of
 /// the comment of the field.
 #[repr(C)]

@@ -26,22 +26,22 @@ pub struct hangpose_contact {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_margin {
-    /// Tilt of gravity, radians, that the object survives in each of eight horizontal directions, with 70 % of the
-    /// friction. The first direction is the supporter's x axis, made perpendicular to gravity (the y axis if
+    /// Tilt of gravity at which the object last touched the supporter before it left, radians, in each of eight
+    /// horizontal directions, with 70 % of the friction; larger than the static limit, because leaving takes time. The first direction is the supporter's x axis, made perpendicular to gravity (the y axis if
     /// gravity is along x); the others follow counter-clockwise seen from above. At most 1.2, where the test ends;
-    /// 0 for directions that were not tried because the tilt in another direction is hopeless.
+    /// 0 for directions that were not tried because the tilt in an earlier one is too small for the pose to be of use.
     pub tilts: [f32; HANGPOSE_DIRECTIONS],
     /// Least of the tilts, radians.
     pub least_tilt: f32,
     /// Time that the object stays, seconds, after gravity tilts by 21.8 degrees at once in the direction of the
     /// least tilt, while only friction damps its swing. 1 if it is still there after 1 s; 0 if the test was skipped
-    /// because the tilt in some direction is hopeless.
+    /// because the tilt in some direction is too small.
     pub jolt_time: f32,
     /// Greatest distance that the centre of mass sank, metres, while gravity tilted by up to 0.9 radians. An object
     /// that settles deeper when it is shaken does not rest firmly.
     pub tilted_sinking: f32,
-    /// Least rise of the centre of mass, metres, over the escape paths that were found; the greatest rise seen if
-    /// no escape was found.
+    /// Least rise of the centre of mass, metres, over the escape paths that were found, an upper bound of the true
+    /// least; the greatest rise seen if no escape was found, which bounds nothing.
     pub escape_rise: f32,
     /// escape_rise divided by the distance from the contacts to the centre of mass; no unit.
     pub escape_ratio: f32,

@@ -47,7 +47,7 @@ pub struct hangpose_prediction {
     pub settling_rotated_off: u32,
     /// Number of releases after which the object slid off or fell through.
     pub settling_slid_off: u32,
-    /// Number of releases after which the object still moved after 3 s.
+    /// Number of releases after which the object still moved after 3 s, the settle time.
     pub settling_moving: u32,
     /// Number of releases after which the object came to rest.
     pub settling_at_rest: u32,

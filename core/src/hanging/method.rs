@@ -32,7 +32,7 @@ pub enum ObjectPlaces<'m> {
         /// How much was left after each step.
         counts: sites::ObjectCounts,
     },
-    /// By ours.
+    /// By the contact method.
     Contacts {
         /// The contact candidates, the deepest capture first.
         contacts: &'m [ObjectContact],
@@ -125,7 +125,7 @@ pub enum SupporterPlaces<'m> {
         /// How much was left after each step.
         counts: sites::SupporterCounts,
     },
-    /// By ours.
+    /// By the contact method.
     Contacts {
         /// The contact candidates, those on level ground first.
         contacts: &'m [SupportContact],
@@ -189,7 +189,7 @@ impl<'m> SupporterPlaces<'m> {
 pub enum SearchCounts {
     /// Of the published method.
     Sites(sites::Counts),
-    /// Of ours.
+    /// Of the contact method.
     Contacts(contacts::Counts),
 }
 

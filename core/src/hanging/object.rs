@@ -41,7 +41,7 @@ impl<'m> Object<'m> {
         model_bytes(model.saturating_add(larger(before_sampling, samples.saturating_add(with_samples))))
     }
 
-    /// What [`analyze`](Self::analyze) needs memory for with this mesh and these params.
+    /// The limits that this mesh and these params require.
     pub fn limits(mesh: &Mesh, params: &Params) -> Limits {
         Limits {
             vertices: mesh.vertices().len(),

@@ -109,7 +109,7 @@ impl<'m> Supporter<'m> {
         &self.support.tree
     }
 
-    /// Limits within which any supporter of this many points is.
+    /// The limits that this supporter requires: its number of points, and zero for the rest.
     pub fn limits(&self) -> Limits {
         Limits::of_points(self.points().points().len())
     }

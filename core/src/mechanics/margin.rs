@@ -18,11 +18,12 @@ pub const MAX_CONTACTS: usize = 8;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Margin {
-    /// Largest tilt of gravity that the object survives, radians, with 70 % of the friction, towards each of
-    /// eight horizontal directions. The first direction is the supporter's x axis (or its y axis, where
+    /// Tilt of gravity at which the object last touched the supporter before it left, radians, towards each of
+    /// eight horizontal directions, with 70 % of the friction and gravity turning at 2.5 rad/s. It is larger than
+    /// the static limit, because leaving takes time. The first direction is the supporter's x axis (or its y axis, where
     /// gravity is along x), made perpendicular to gravity; the others follow counter-clockwise seen from
-    /// above. At most [`Margin::MOST_TILT`], where the test ends. Zero for directions that were not tested
-    /// because the tilt in another one was too small.
+    /// above. [`Margin::MOST_TILT`] where it never left. The test stops at the first direction whose tilt is
+    /// too small for the pose to be of use (0.15 radians or more); the directions after it are zero.
     pub tilts: [f32; DIRECTIONS],
     /// Duration for which the object stays, seconds, when gravity suddenly tilts by [`Margin::JOLT`] towards
     /// the direction of the least tilt and only friction ends its swing: a robot that carries the supporter
@@ -32,9 +33,9 @@ pub struct Margin {
     /// Largest drop of the centre of mass, metres, while gravity tilted by up to 0.9 radians. An object that
     /// drops when it is shaken lies on a ledge, not firmly.
     pub tilted_sinking: f32,
-    /// Least rise of the centre of mass, metres, over the escapes that were found; where none was found, the
-    /// highest rise that was seen. Times `m g` it is an escape energy (Dong and Pokorny, arXiv 2309.01224):
-    /// an upper bound of the least energy of any escape.
+    /// Least rise of the centre of mass, metres, over the escapes that were found: times `m g` an upper bound of
+    /// the escape energy (Dong and Pokorny, arXiv 2309.01224). Where no escape was found, the highest rise that
+    /// was seen, which bounds nothing.
     pub escape_rise: f32,
     /// [`escape_rise`](Self::escape_rise) over the distance from the contacts to the centre of mass; no unit.
     pub escape_ratio: f32,
