@@ -45,7 +45,7 @@ pub enum PredictError {
     Params(ParamsError),
     /// The memory is too small.
     OutOfMemory(OutOfMemory),
-    /// The params ask to let the object go, but it was analysed without [`voxels`](Params::voxels).
+    /// The params ask to let the object go, but it was analysed without [`voxels`](crate::Params::voxels).
     NoDistanceField,
 }
 

@@ -12,12 +12,14 @@ use crate::params::Params;
 pub struct LetGo {
     /// Whether the object rests, falls or moves at the end.
     pub fate: Fate,
-    /// The last pose of the simulation, which ends as soon as the fate is certain: maps object coordinates to supporter coordinates; metres.
+    /// The last pose of the simulation, which ends as soon as the fate is certain: maps object coordinates to supporter
+    /// coordinates; metres.
     pub pose: Pose,
 }
 
-/// Releases the object at `release`, which maps object to supporter coordinates, and simulates up to four seconds. The inner error says
-/// why the monitor stopped the simulation. `memory` is working memory, [`predict_bytes`](super::predict_bytes) of it.
+/// Releases the object at `release`, which maps object to supporter coordinates, and simulates up to four seconds. The
+/// inner error says why the monitor stopped the simulation. `memory` is working memory,
+/// [`predict_bytes`](super::predict_bytes) of it.
 pub fn let_go(
     object: &Object,
     supporter: &Supporter,

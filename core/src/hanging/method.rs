@@ -1,7 +1,8 @@
 //! The one place that knows which methods there are, and chooses by [`Params::candidates`].
 //!
-//! A method is a folder with the same entry points: `object_bytes`, `object_slots`, `sample` and `find_on_object`; the same for a supporter;
-//! `search`, which writes poses; and `Counts::empty_stage`, which names the step that left nothing.
+//! A method is a folder with the same entry points: `object_bytes`, `object_slots`, `sample` and `find_on_object`; the
+//! same for a supporter; `search`, which writes poses; and `Counts::empty_stage`, which names the step that left
+//! nothing.
 
 use super::contacts::{self, ObjectContact, SupportContact};
 use super::error::PredictError;
@@ -41,7 +42,8 @@ pub enum ObjectPlaces<'m> {
     },
 }
 
-/// Bytes of what a method keeps of an object. The sum over the methods, because `Limits` do not say which one it is for.
+/// Bytes of what a method keeps of an object. The sum over the methods, because `Limits` do not say which one it is
+/// for.
 pub(super) const fn object_bytes() -> usize {
     sites::object_bytes().saturating_add(contacts::object_bytes())
 }
@@ -209,8 +211,8 @@ pub(super) const fn search_bytes() -> usize {
     contacts::search_bytes()
 }
 
-/// Searches with the method of the params and writes the best poses to `poses`, best first. Places that another method found count
-/// as none.
+/// Searches with the method of the params and writes the best poses to `poses`, best first. Places that another method
+/// found count as none.
 pub(super) fn search(
     scene: &Scene,
     (object, supporter): (&ObjectPlaces, &SupporterPlaces),

@@ -1,8 +1,9 @@
 //! From a mesh and a cloud to ranked hanging poses.
 //!
-//! An [`Object`] and a [`Supporter`] are analysed once; [`predict`] makes [`HangingPose`]s of them, or a [`Rejection`]. A method finds
-//! *places* on both, which are hanging and support sites in the published method ([`sites`]) and contact candidates in the contact
-//! method ([`contacts`]), and poses that join them. `method.rs` alone chooses the method; the other files of this folder serve any.
+//! An [`Object`] and a [`Supporter`] are analysed once; [`predict`] makes [`HangingPose`]s of them, or a [`Rejection`].
+//! A method finds *places* on both, which are hanging and support sites in the published method ([`sites`]) and contact
+//! candidates in the contact method ([`contacts`]), and poses that join them. `method.rs` alone chooses the method; the
+//! other files of this folder serve any.
 
 pub mod contacts;
 mod counts;

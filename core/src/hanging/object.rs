@@ -9,8 +9,8 @@ use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::Params;
 
-/// An object, analysed: shape, centre of mass and the places by which it may hang, in object coordinates. Immutable; any number
-/// of threads may use it at once.
+/// An object, analysed: shape, centre of mass and the places by which it may hang, in object coordinates. Immutable;
+/// any number of threads may use it at once.
 #[derive(Clone, Copy)]
 pub struct Object<'m> {
     surface: Surface<'m>,
@@ -52,8 +52,8 @@ impl<'m> Object<'m> {
         }
     }
 
-    /// Analyses `mesh` in `memory`, which must hold [`Object::bytes`] for its [`limits`](Self::limits). The mesh need not
-    /// stay.
+    /// Analyses `mesh` in `memory`, which must hold [`Object::bytes`] for its [`limits`](Self::limits). The mesh need
+    /// not stay.
     pub fn analyze(
         mesh: &Mesh,
         params: &Params,

@@ -17,8 +17,8 @@ pub struct Prediction<'p> {
     pub poses: &'p [HangingPose],
     /// Why there are none, if there are none and the search was not stopped.
     pub rejection: Option<Rejection>,
-    /// Why the search ended early, here or in the analysis of the object or the supporter; `None` if it did not. The poses are
-    /// the best found until then.
+    /// Why the search ended early, here or in the analysis of the object or the supporter; `None` if it did not. The
+    /// poses are the best found until then.
     pub stopped: Option<Stop>,
     /// How much was left after each step.
     pub counts: Counts,
@@ -33,10 +33,10 @@ pub const fn predict_bytes(limits: &Limits) -> usize {
 
 /// Finds poses in which the object hangs and writes the best to `poses`, best first, as many as it holds.
 ///
-/// With [`Candidates::Sites`](crate::Candidates::Sites) every hanging site is matched with every support site; a pose that cannot
-/// get into `poses` any more is not evaluated to the end, so that more room costs more time. With [`Params::settle`] poses are
-/// released under gravity, and only those that stay are given. `memory` is working memory, [`predict_bytes`] of it; its contents do
-/// not matter.
+/// With [`Candidates::Sites`](crate::Candidates::Sites) every hanging site is matched with every support site; a pose
+/// that cannot get into `poses` any more is not evaluated to the end, so that more room costs more time. With
+/// [`Params::settle`] poses are released under gravity, and only those that stay are given. `memory` is working memory,
+/// [`predict_bytes`] of it; its contents do not matter.
 ///
 /// The object and the supporter must have been analysed with the same `params`.
 pub fn predict<'p>(

@@ -15,8 +15,8 @@ const NO_DIRECTION: f32 = 1e-6;
 /// Normals whose length is within this of one are taken as of unit length.
 const UNIT_LENGTH: f32 = 1e-3;
 
-/// A supporter, analysed: points and the places on which something may hang, in supporter coordinates. Immutable; any number of
-/// threads may use it at once.
+/// A supporter, analysed: points and the places on which something may hang, in supporter coordinates. Immutable; any
+/// number of threads may use it at once.
 #[derive(Clone, Copy)]
 pub struct Supporter<'m> {
     support: Support<'m>,
@@ -33,7 +33,8 @@ pub struct NormalCounts {
     pub estimated: usize,
     /// Normals that were not of unit length, and were scaled to it.
     pub renormalised: usize,
-    /// Normals that were given and reversed: all of them, where they pointed into the solid, or some, where their signs did not agree.
+    /// Normals that were given and reversed: all of them, where they pointed into the solid, or some, where their signs
+    /// did not agree.
     pub reversed: usize,
 }
 

@@ -18,12 +18,12 @@ pub const MAX_CONTACTS: usize = 8;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Margin {
-    /// Tilt of gravity at which the object last touched the supporter before it left, radians, towards each of
-    /// eight horizontal directions, with 70 % of the friction and gravity turning at 2.5 rad/s. It is larger than
-    /// the static limit, because leaving takes time. The first direction is the supporter's x axis (or its y axis, where
-    /// gravity is along x), made perpendicular to gravity; the others follow counter-clockwise seen from
-    /// above. [`Margin::MOST_TILT`] where it never left. The test stops at the first direction whose tilt is
-    /// too small for the pose to be of use (0.15 radians or more); the directions after it are zero.
+    /// Tilt of gravity at which the object last touched the supporter before it left, radians, towards each of eight
+    /// horizontal directions, with 70 % of the friction and gravity turning at 2.5 rad/s. It is larger than the static
+    /// limit, because leaving takes time. The first direction is the supporter's x axis (or its y axis, where gravity
+    /// is along x), made perpendicular to gravity; the others follow counter-clockwise seen from above.
+    /// [`Margin::MOST_TILT`] where it never left. The test stops at the first direction whose tilt is too small for the
+    /// pose to be of use (0.15 radians or more); the directions after it are zero.
     pub tilts: [f32; DIRECTIONS],
     /// Duration for which the object stays, seconds, when gravity suddenly tilts by [`Margin::JOLT`] towards
     /// the direction of the least tilt and only friction ends its swing: a robot that carries the supporter

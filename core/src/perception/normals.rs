@@ -19,15 +19,16 @@ pub(crate) const fn scratch_bytes(points: usize) -> usize {
 pub(crate) struct Completed {
     /// Normals that were missing and were estimated.
     pub(crate) estimated: usize,
-    /// Given normals that were reversed: all of them, because they pointed into the solid, or those whose sign did not agree with the
-    /// others.
+    /// Given normals that were reversed: all of them, because they pointed into the solid, or those whose sign did not
+    /// agree with the others.
     pub(crate) reversed: usize,
 }
 
 /// Fills in the normals, in tree order, that are zero, and reverses given ones that point into the solid or at random.
 ///
-/// Where some normals are known, the others take the side of the known ones around them. Where none is, or the known ones have no
-/// consistent side, they face the `viewpoint` if there is one, and otherwise the outside that [`orientation::orient`] finds.
+/// Where some normals are known, the others take the side of the known ones around them. Where none is, or the known
+/// ones have no consistent side, they face the `viewpoint` if there is one, and otherwise the outside that
+/// [`orientation::orient`] finds.
 pub(crate) fn complete(
     tree: &PointTree,
     normals: &mut [Vector],

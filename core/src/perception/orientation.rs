@@ -1,4 +1,5 @@
-//! Which side of a surface is outside: turns the normals of a cloud so that they agree with each other and point out of the solid.
+//! Which side of a surface is outside: turns the normals of a cloud so that they agree with each other and point out of
+//! the solid.
 
 use crate::geometry::{Neighbour, Point, PointTree, Vector};
 use crate::heap::Heap;
@@ -7,8 +8,8 @@ use bytemuck::{Pod, Zeroable};
 
 // Tolerances, set by hand on the shapes of the tests below; no value was fitted.
 
-/// Share of neighbouring normals that must agree in sign for the normals to count as oriented. Normals of one surface agree everywhere but
-/// at noise and sharp edges; without orientation half of them do.
+/// Share of neighbouring normals that must agree in sign for the normals to count as oriented. Normals of one surface
+/// agree everywhere but at noise and sharp edges; without orientation half of them do.
 const MIN_AGREEMENT: f32 = 0.8;
 /// Share of the opposing points that must lie in front of the normals for these to count as pointing inwards.
 const MIN_INWARD: f32 = 0.8;
@@ -21,10 +22,11 @@ const MIN_VOTES: f32 = 8.0;
 
 /// Cosine of the bend between neighbours up to which they are in one piece: 53 degrees.
 const SMOOTH: f32 = 0.6;
-/// Share of a piece's voters by which those with an opposite surface on one side must outnumber those with one on the other.
+/// Share of a piece's voters by which those with an opposite surface on one side must outnumber those with one on the
+/// other.
 const MIN_SHARE: f32 = 0.25;
-/// Mean sine of the bend between neighbours above which a piece is convex, or below its negative concave. Less is what noise bends a
-/// plane by.
+/// Mean sine of the bend between neighbours above which a piece is convex, or below its negative concave. Less is what
+/// noise bends a plane by.
 const MIN_DIVERGENCE: f32 = 0.02;
 
 // Budget.
@@ -33,7 +35,8 @@ const MIN_DIVERGENCE: f32 = 0.02;
 const NEIGHBOURS: usize = 16;
 /// Points that vote on the side of a cloud.
 const VOTERS: usize = 512;
-/// Nearest points with which a voter's normal is compared, itself included: a ring around it, not only its row in a regular grid.
+/// Nearest points with which a voter's normal is compared, itself included: a ring around it, not only its row in a
+/// regular grid.
 const COMPARED: usize = 9;
 
 /// Bytes of working memory for [`orient`] on a cloud of `points`.
@@ -81,11 +84,12 @@ pub(crate) fn judge(tree: &PointTree, normals: &[Vector]) -> Given {
 
 /// Gives normals of arbitrary sign, in tree order, the side that is outside.
 ///
-/// Signs are propagated from neighbour to neighbour across the least bends first (Hoppe et al. 1992, "Surface Reconstruction from
-/// Unorganized Points"), along circular arcs (König and Gumhold 2009, "Consistent Propagation of Normal Orientations in Point Clouds").
-/// Sharp bends cut the cloud into pieces, because the side beyond one, as where a bar meets a plate, is not certain. Each piece then
-/// takes the side that its opposing points say, or else its curvature, because what things hang on is mostly convex. A piece for which
-/// neither decides keeps its side against the piece that it was reached from, and the first of all faces `up` at its top.
+/// Signs are propagated from neighbour to neighbour across the least bends first (Hoppe et al. 1992, "Surface
+/// Reconstruction from Unorganized Points"), along circular arcs (König and Gumhold 2009, "Consistent Propagation of
+/// Normal Orientations in Point Clouds"). Sharp bends cut the cloud into pieces, because the side beyond one, as where
+/// a bar meets a plate, is not certain. Each piece then takes the side that its opposing points say, or else its
+/// curvature, because what things hang on is mostly convex. A piece for which neither decides keeps its side against
+/// the piece that it was reached from, and the first of all faces `up` at its top.
 pub(crate) fn orient(
     tree: &PointTree,
     normals: &mut [Vector],
@@ -207,9 +211,9 @@ fn transported(tree: &PointTree, normals: &[Vector], from: usize, to: usize) -> 
     if length_squared > 0.0 { normal - way * (2.0 * normal.dot(&way) / length_squared) } else { normal }
 }
 
-/// On which side of a point's normal the nearest point of an opposite surface lies: -1 behind it, as through a solid, 1 in front of it,
-/// `None` if there is none. Opposite normals point in opposite directions; where `is_free` says that the sign of the other normal means
-/// nothing yet, along one line.
+/// On which side of a point's normal the nearest point of an opposite surface lies: -1 behind it, as through a solid, 1
+/// in front of it, `None` if there is none. Opposite normals point in opposite directions; where `is_free` says that
+/// the sign of the other normal means nothing yet, along one line.
 fn opposing_side(
     tree: &PointTree,
     normals: &[Vector],
@@ -234,7 +238,8 @@ fn opposing_side(
     side
 }
 
-/// How much the normals around a point diverge, on average the sine of their bend; positive where the surface is convex.
+/// How much the normals around a point diverge, on average the sine of their bend; positive where the surface is
+/// convex.
 fn divergence(tree: &PointTree, normals: &[Vector], index: usize) -> f32 {
     let point: Point = tree.points()[index];
     let mut found = [Neighbour::default(); NEIGHBOURS];

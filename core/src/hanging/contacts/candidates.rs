@@ -1,5 +1,5 @@
-//! Candidate poses: a contact of the object is laid on a contact of the supporter, with the centre of mass straight below. They are
-//! made one at a time, the highest score first.
+//! Candidate poses: a contact of the object is laid on a contact of the supporter, with the centre of mass straight
+//! below. They are made one at a time, the highest score first.
 
 use super::constants::*;
 use super::counts::CandidateCounts;
@@ -101,8 +101,8 @@ impl<'a> CandidateSearch<'a> {
     /// The candidate with the highest score that has not been returned yet.
     pub(super) fn next(&mut self, meter: &mut Meter) -> Result<Option<Candidate>, Stop> {
         loop {
-            // Until the next place with room is known, a place's discount cannot count. Of equal scores the first wins, which has
-            // the deepest capture.
+            // Until the next place with room is known, a place's discount cannot count. Of equal scores the first wins,
+            // which has the deepest capture.
             let value = |way: &Way| match way.is_waiting {
                 0 => way.score,
                 _ => way.score - self.places[way.place as usize].discount,
@@ -206,8 +206,8 @@ impl Way {
     }
 }
 
-/// The pose with this rotation that holds `contact` just above `place`. Small penetrations are resolved by pushes; `None` if that does
-/// not make it clear.
+/// The pose with this rotation that holds `contact` just above `place`. Small penetrations are resolved by pushes;
+/// `None` if that does not make it clear.
 fn clear_pose(
     scene: (&Body, &Support),
     contact: &ObjectContact,

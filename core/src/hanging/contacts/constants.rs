@@ -1,23 +1,26 @@
 //! The constants of the contacts method, in three groups: physics, tolerances of the input, and budget.
 //!
-//! Where no measurement is named, a value was set by hand while the success of the best pose was watched on seeds 7 and 100, with
-//! `cargo run --release -p host-tests --bin tables -- --summary --engine bullet --profile default --pairs 330 --seed 100`; other values
-//! were not searched systematically. Seeds 1 and 202, which docs/RESULTS.md reports, were not used.
+//! Where no measurement is named, a value was set by hand while the success of the best pose was watched on seeds 7 and
+//! 100, with `cargo run --release -p host-tests --bin tables -- --summary --engine bullet --profile default --pairs 330
+//! --seed 100`; other values were not searched systematically. Seeds 1 and 202, which docs/RESULTS.md reports, were not
+//! used.
 
 // Physics and geometry: what can be caught, and where.
 
-/// Least cosine between a sample's normal and its direction to the centre of mass: eq. (3). The paper asks for 0.8; less here, because
-/// gravity decides later. Larger: fewer contacts on flat undersides. Smaller: more contacts that slide off.
+/// Least cosine between a sample's normal and its direction to the centre of mass: eq. (3). The paper asks for 0.8;
+/// less here, because gravity decides later. Larger: fewer contacts on flat undersides. Smaller: more contacts that
+/// slide off.
 pub(super) const MIN_OBJECT_COSINE: f32 = 0.3;
-/// Least cosines between a supporter point's normal and up, one pass each: `alpha_s` of section II-C. The first pass places contacts on
-/// the ridges of bars, not on their flanks; the last one asks for less than the paper's 0.8, for steep pegs.
+/// Least cosines between a supporter point's normal and up, one pass each: `alpha_s` of section II-C. The first pass
+/// places contacts on the ridges of bars, not on their flanks; the last one asks for less than the paper's 0.8, for
+/// steep pegs.
 pub(super) const MIN_SUPPORT_COSINES: [f32; 4] = [0.95, 0.8, 0.6, 0.3];
 /// Depths below a contact at which rays to both sides test whether a bar is caught, metres.
 pub(super) const CAPTURE_DEPTHS: [f32; 6] = [0.0015, 0.003, 0.006, 0.012, 0.024, 0.048];
 /// Depth below a contact at which the free length along the bar is measured, metres: about the depth of a bar's axis.
 pub(super) const PASSAGE_DEPTH: f32 = 0.004;
-/// Least length of the level bar that must reach a contact, metres. Contacts that only a shorter one reaches, as inside a cup, are
-/// enclosed.
+/// Least length of the level bar that must reach a contact, metres. Contacts that only a shorter one reaches, as inside
+/// a cup, are enclosed.
 pub(super) const BAR_LENGTH: f32 = 0.1;
 /// Sine of the slope above which a bar is also followed along its own direction, not only horizontally.
 pub(super) const LEVEL_SINE: f32 = 0.1;
@@ -71,19 +74,23 @@ pub(super) const REST_SHARE: f32 = 0.6;
 pub(super) const PATIENCE: usize = 8;
 /// Score taken off a contact after that many places without room, so that contacts of equal score take turns.
 pub(super) const NO_ROOM_DISCOUNT: f32 = 0.001;
-/// Places that one contact is released on at most. An object that falls from these rarely hangs by the same contact elsewhere.
+/// Places that one contact is released on at most. An object that falls from these rarely hangs by the same contact
+/// elsewhere.
 pub(super) const MAX_PLACES_PER_CONTACT: u32 = 4;
 /// Poses made at most. Where none of so many is clear, there is no room.
 pub(super) const MAX_POSES_MADE: usize = 100_000;
 /// Pushes at most to bring a pose clear of the supporter.
 pub(super) const MAX_PUSHES: usize = 5;
-/// Probe points of a place, tested before the whole supporter. A cheap first test: most collisions are with the surroundings.
+/// Probe points of a place, tested before the whole supporter. A cheap first test: most collisions are with the
+/// surroundings.
 pub(super) const PROBES: usize = 16;
-/// Probe points of a place that are replaced by the latest collisions, because the next pose probably collides there as well.
+/// Probe points of a place that are replaced by the latest collisions, because the next pose probably collides there as
+/// well.
 pub(super) const REMEMBERED_PROBES: u32 = 8;
-/// Stride through the list of places, so that consecutive ones are far apart on the supporter. It is prime, and so coprime to every
-/// number of places that is not a multiple of it.
+/// Stride through the list of places, so that consecutive ones are far apart on the supporter. It is prime, and so
+/// coprime to every number of places that is not a multiple of it.
 pub(super) const PLACE_STRIDE: usize = 37;
-/// Divisor of the attempt budget once a pose hangs: a quarter of it is spent in all. On seed 100, budgets of 16, 32 and 42
-/// gave 83, 87 and 88 % robust pairs; on real meshes, where often nothing hangs at first, 128 attempts found poses that 32 missed.
+/// Divisor of the attempt budget once a pose hangs: a quarter of it is spent in all. On seed 100, budgets of 16, 32 and
+/// 42 gave 83, 87 and 88 % robust pairs; on real meshes, where often nothing hangs at first, 128 attempts found poses
+/// that 32 missed.
 pub(super) const ATTEMPT_DIVISOR: usize = 4;

@@ -1,5 +1,5 @@
-//! Our method: contact candidates of the object are laid on contact candidates of the supporter, about the true centre of mass,
-//! and gravity decides which of the poses hang.
+//! Our method: contact candidates of the object are laid on contact candidates of the supporter, about the true centre
+//! of mass, and gravity decides which of the poses hang.
 //!
 //! | step | file |
 //! |---|---|

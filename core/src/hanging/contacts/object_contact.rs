@@ -22,8 +22,8 @@ pub struct ObjectContact {
     pub capture: f32,
     /// Distance to the surface opposite, metres; infinite if there is none.
     pub room: f32,
-    /// Free length for such a bar along its direction, towards the freer side, metres; infinite where nothing stops it, as in a
-    /// hole.
+    /// Free length for such a bar along its direction, towards the freer side, metres; infinite where nothing stops it,
+    /// as in a hole.
     pub passage: f32,
 }
 
@@ -33,8 +33,8 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Fills `slots` with contacts, the deepest capture first, and of equal ones the narrowest, which hold more firmly. `Some`
-    /// says that the work limit ended the search early, with the contacts found until then.
+    /// Fills `slots` with contacts, the deepest capture first, and of equal ones the narrowest, which hold more firmly.
+    /// `Some` says that the work limit ended the search early, with the contacts found until then.
     pub(super) fn find(
         &self,
         slots: &mut [ObjectContact],

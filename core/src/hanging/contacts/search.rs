@@ -14,8 +14,8 @@ use crate::hanging::settling::Settling;
 use crate::memory::Arena;
 use crate::monitor::{Meter, Stop};
 
-/// Writes the best poses to `poses`: with [`Params::settle`](crate::Params::settle) those that stay when released, otherwise the candidates as they are
-/// made.
+/// Writes the best poses to `poses`: with [`Params::settle`](crate::Params::settle) those that stay when released,
+/// otherwise the candidates as they are made.
 pub(in crate::hanging) fn search(
     scene: &Scene,
     (contacts, places): (&[ObjectContact], &[SupportContact]),

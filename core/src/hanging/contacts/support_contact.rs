@@ -52,7 +52,8 @@ impl Search<'_> {
         (SupporterCounts { contact_points, contacts }, None)
     }
 
-    /// Fills `slots` with contacts at least this far apart, and returns their number; `None` if there are more than `slots`.
+    /// Fills `slots` with contacts at least this far apart, and returns their number; `None` if there are more than
+    /// `slots`.
     fn spread(&self, apart: f32, slots: &mut [SupportContact]) -> Option<usize> {
         let mut count = 0;
         for least in MIN_SUPPORT_COSINES {

@@ -57,8 +57,8 @@ const MIN_RELEASE_GAP: f32 = 0.0001;
 
 // Physics.
 
-/// Largest distance by which the centre of mass may sink from the release pose to the rest pose, metres. Farther down it is another
-/// place than the one that was chosen.
+/// Largest distance by which the centre of mass may sink from the release pose to the rest pose, metres. Farther down
+/// it is another place than the one that was chosen.
 const MAX_RELEASE_SINKING: f32 = 0.01;
 
 // Budget.
@@ -111,7 +111,8 @@ impl<'a> Settling<'a> {
         (left, Ok(()))
     }
 
-    /// Releases the object, offers its rest pose to `poses` if it is probable enough, and returns whether it came to rest.
+    /// Releases the object, offers its rest pose to `poses` if it is probable enough, and returns whether it came to
+    /// rest.
     pub(super) fn release(
         &mut self,
         start: &HangingPose,
@@ -169,8 +170,8 @@ impl<'a> Settling<'a> {
         settle((self.body, self.support), start, &-self.params.up(), settings, self.sleeps, meter)
     }
 
-    /// A release pose off the supporter and close to a rest pose, and the rest pose that it leads to. The release is simulated again,
-    /// because it may lead elsewhere; if it does, the search goes on from there.
+    /// A release pose off the supporter and close to a rest pose, and the rest pose that it leads to. The release is
+    /// simulated again, because it may lead elsewhere; if it does, the search goes on from there.
     fn find_release(
         &mut self,
         rests: Settled,

@@ -2,8 +2,8 @@
 
 use crate::mechanics::Margin;
 
-// A logistic regression of success, as the judge in `host-tests` defines it, on the margins of a rest pose. Fitted on the poses of
-// seeds 7 and 100; `make calibrate` prints a new fit of seed 100 beside these values.
+// A logistic regression of success, as the judge in `host-tests` defines it, on the margins of a rest pose. Fitted on
+// the poses of seeds 7 and 100; `make calibrate` prints a new fit of seed 100 beside these values.
 
 /// Intercept of the score.
 const INTERCEPT: f32 = -7.06;
@@ -11,8 +11,8 @@ const INTERCEPT: f32 = -7.06;
 const PER_JOLT: f32 = 2.79;
 /// Score for each radian of the least tilt, 1/rad.
 const PER_TILT: f32 = 1.24;
-/// Score for each metre by which the centre of mass sinks in the tilt test beyond `FREE_SINKING`, 1/m. Set by hand, as small as
-/// orders poses on a ledge behind the others.
+/// Score for each metre by which the centre of mass sinks in the tilt test beyond `FREE_SINKING`, 1/m. Set by hand, as
+/// small as orders poses on a ledge behind the others.
 const PER_SINKING: f32 = -40.0;
 /// Sinking in the tilt test that does not count, metres.
 const FREE_SINKING: f32 = 0.008;
@@ -23,10 +23,12 @@ const PER_CLEARANCE: f32 = 6690.0;
 /// Clearance that counts at most, metres: the share that hangs does not grow beyond it.
 const MAX_CLEARANCE: f32 = 0.001;
 
-/// Probability from which a pose is firm: [`Params::firm_enough`](crate::Params::firm_enough) such releases end the search.
+/// Probability from which a pose is firm: [`Params::firm_enough`](crate::Params::firm_enough) such releases end the
+/// search.
 pub(super) const FIRM: f32 = 0.975;
 
-/// The least tilt, radians, at which a pose with this clearance, in metres, reaches `probability` if it survives the jolt test.
+/// The least tilt, radians, at which a pose with this clearance, in metres, reaches `probability` if it survives the
+/// jolt test.
 pub(super) fn least_tilt(probability: f32, clearance: f32) -> f32 {
     let score = libm::logf(probability / (1.0 - probability));
     let rest = INTERCEPT + PER_JOLT * Margin::MOST_JOLT_TIME + PER_CLEARANCE * clearance.min(MAX_CLEARANCE);

@@ -11,8 +11,8 @@ pub struct Rest {
     pub pose: Pose,
     /// How far the centre of mass sinks from the release pose to the rest pose, metres.
     pub sinking: f32,
-    /// Distance from the supporter at the release pose, metres: [`Params::clearance`](crate::Params::clearance), or less where
-    /// there is no room.
+    /// Distance from the supporter at the release pose, metres: [`Params::clearance`](crate::Params::clearance), or
+    /// less where there is no room.
     pub clearance: f32,
     /// The probability that the object hangs and stays, 0 to 1.
     pub probability: f32,
@@ -37,7 +37,8 @@ impl Rest {
         &self.contacts[..self.contact_count as usize]
     }
 
-    /// Whether another pose equals this rest pose to within a robot's accuracy: 5 mm at the centre of mass, and 0.1 rad.
+    /// Whether another pose equals this rest pose to within a robot's accuracy: 5 mm at the centre of mass, and 0.1
+    /// rad.
     pub(super) fn is_like(&self, other: &Pose, centre: &Point) -> bool {
         let apart = self.pose * centre - other * centre;
         apart.norm() < 0.005 && self.pose.rotation.angle_to(&other.rotation) < 0.1
