@@ -6,15 +6,15 @@ pub(super) const BLOCK: u32 = 4;
 pub(super) const SIDE: usize = BLOCK as usize + 1;
 /// Nodes of a brick.
 pub(super) const BRICK_NODES: usize = SIDE * SIDE * SIDE;
-/// The same, filled up so that they can be worked on by fours.
+/// `BRICK_NODES` padded to a multiple of four, for four lanes at once.
 pub(super) const PADDED: usize = 128;
-/// How much the index of a node grows along each axis.
+/// Stride of the node index along each axis.
 pub(super) const STEP: [usize; 3] = [1, SIDE, SIDE * SIDE];
 
-/// Some nodes of a brick.
+/// A set of nodes of a brick.
 pub(super) type Nodes = u128;
 
-/// All of them.
+/// All nodes.
 pub(super) const ALL: Nodes = (1 << BRICK_NODES) - 1;
 
 /// The nodes whose coordinate along each axis is 0; shifted by 4 steps, those where it is 4.
@@ -35,7 +35,7 @@ pub(super) const fn coordinates(node: usize) -> [usize; 3] {
     [node % SIDE, node / SIDE % SIDE, node / (SIDE * SIDE)]
 }
 
-/// Coordinates of all nodes, an axis each.
+/// Coordinates of all nodes, one row per axis.
 pub(super) const COORDINATES: [[f32; PADDED]; 3] = {
     let mut all = [[0.0; PADDED]; 3];
     let mut node = 0;

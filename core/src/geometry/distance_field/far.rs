@@ -1,4 +1,4 @@
-//! How far the blocks without bricks are from the mesh.
+//! Distances of the blocks without bricks from the mesh.
 
 use super::brick::{BLOCK, STEP};
 use super::frame::Frame;
@@ -11,7 +11,7 @@ use crate::memory::{Arena, OutOfMemory, array_bytes};
 ///
 /// All of the mesh is in blocks with bricks, so the centre of another block is at least as far from the mesh as from the
 /// closest of those blocks. That distance is found an axis at a time. Close to the bricks, where it is far less than the distance to the
-/// mesh, the nearest triangles spread on from them: a block asks the triangles that its neighbours found nearest.
+/// mesh, the nearest triangles spread on from them: a block measures its distance to the triangles that are nearest to its neighbours.
 pub(super) struct Far<'a> {
     pub(super) layout: &'a Layout,
     pub(super) grid: &'a mut [u32],
@@ -26,9 +26,9 @@ pub(super) const fn scratch_bytes(blocks: usize) -> usize {
     array_bytes::<f32>(blocks).saturating_mul(2).saturating_add(array_bytes::<u32>(blocks))
 }
 
-/// Blocks closer than this to one with a brick, in blocks, ask their neighbours,
+/// Distance to a block with a brick up to which nearest triangles spread, blocks.
 const CLOSE: f32 = 4.0;
-/// so often at most.
+/// Passes of that spreading at most.
 const ROUNDS: usize = 8;
 
 /// Square of the distance along one axis from the centre of a block to another block `steps` away, in blocks.

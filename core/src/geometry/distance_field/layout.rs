@@ -17,19 +17,20 @@ pub(super) const fn max_blocks(voxels: usize) -> usize {
     larger(voxels / 2, 8)
 }
 
-/// Voxels are no finer than the largest extent over this,
+/// Largest number of voxels along the largest extent.
 const FINEST: f32 = 400.0;
-/// or than this, in metres, unless the largest extent has fewer than `FEWEST` of them,
+/// Least voxel size, metres, unless the largest extent then has fewer than `FEWEST` voxels.
 const FINEST_METRES: f32 = 0.8e-3;
+/// Number of voxels along the largest extent up to which voxels may be finer than `FINEST_METRES`.
 const FEWEST: f32 = 100.0;
-/// or than the largest coordinate over this, so that `f32` can tell a hundred points apart in each.
+/// Largest ratio of the largest coordinate to a voxel: `f32` then resolves a hundredth of a voxel.
 const FINEST_COORDINATE: f32 = 65_536.0;
 
-/// How far into the mesh's surroundings bricks reach, in voxels: the band, and a little for rounding.
+/// Distance from the mesh up to which bricks reach, voxels: the band, and a margin for rounding.
 pub(super) const REACH: f32 = BAND + 0.01;
-/// How often a voxel size is tried that promises to fill the memory better.
+/// Voxel sizes tried at most to fill the memory better.
 const TRIES: usize = 4;
-/// A field that uses this much of its bricks is not refined.
+/// Share of the bricks in use above which the voxel size is not refined.
 const FULL: f32 = 0.85;
 
 /// Where the blocks are.
@@ -41,9 +42,9 @@ pub(super) struct Layout {
     pub(super) voxel: f32,
     /// One over it.
     inverse: f32,
-    /// How many blocks along each axis.
+    /// Number of blocks along each axis.
     pub(super) blocks: [u32; 3],
-    /// How many voxels along each axis.
+    /// Number of voxels along each axis.
     cells: [f32; 3],
 }
 

@@ -1,8 +1,8 @@
-//! Signed distances of a mesh, sampled once so that each costs nanoseconds.
+//! Signed distance field of a mesh, sampled once, so that a query takes nanoseconds.
 //!
 //! Space around the mesh is cut into blocks of four voxels a side. A block that the mesh, or a band around it, passes
-//! through holds a brick: the distances at its 5 x 5 x 5 nodes, between which is interpolated. Any other block holds
-//! one distance that nothing in it is closer than.
+//! through holds a brick: the distances at its 5 x 5 x 5 nodes, which are interpolated. Any other block holds one
+//! distance, a lower bound for all points in it.
 //!
 //! Built in four steps, a file each: which blocks hold bricks and how fine the voxels are ([`layout`]), how far the
 //! nodes are from the mesh ([`nearest`]), on which side of it ([`sign`]), and how far the blocks without bricks are
@@ -34,7 +34,7 @@ use layout::Layout;
 /// it may be the thickness of the wall, and the wall may be lost. Beyond the band they are on the safe side: never further
 /// from zero than the distance is.
 ///
-/// What is inside is [`Surface::is_inside`]'s to say. Around a closed mesh the sign is right wherever the distance is more
+/// [`Surface::is_inside`] defines the inside. Around a closed mesh the sign is right wherever the distance is more
 /// than that error. Around an open one the inside ends somewhere in the opening; there the sign may change a block, four
 /// voxels, too early or late.
 #[derive(Clone, Copy)]
@@ -50,11 +50,12 @@ pub struct DistanceField<'m> {
 
 /// Distances within this many voxels of the mesh are interpolated.
 const BAND: f32 = 1.0;
-/// Beyond the band, distances are understated by this many voxels and this part of them, which is more than interpolation
-/// and the nearest of many small triangles being missed may overstate them.
+/// Constant part by which distances beyond the band are understated, voxels: more than interpolation, or missing the nearest
+/// of many small triangles, may overstate them by.
 const MARGIN: f32 = 0.3;
+/// Relative part by which distances beyond the band are understated.
 const MARGIN_PART: f32 = 0.1;
-/// What distances are rounded to, in voxels. No node of a brick is eight voxels off the mesh.
+/// Resolution of stored distances, voxels. It fits an `i16`, because no node of a brick is eight voxels off the mesh.
 const QUANTUM: f32 = 1.0 / 4096.0;
 
 /// What a block holds, packed into a `u32`.

@@ -1,8 +1,8 @@
 //! How far the nodes of the bricks are from the mesh, and which triangle is nearest.
 //!
-//! Every triangle is asked by the nodes close to it, so that what those get is exact. From them the nearest triangles
-//! spread to their neighbours, a layer at a time: a node asks the triangles that its neighbours found nearest. That may
-//! miss the nearest of many small triangles, by less than one of them.
+//! Nodes close to a triangle measure their distance to it directly, so their distances are exact. From them the nearest
+//! triangles spread to their neighbours, a layer at a time: a node measures its distance to the triangles that are nearest
+//! to its neighbours. That may miss the nearest of many small triangles, with an error below the size of one of them.
 
 use super::brick::{
     ACROSS, ALL, BESIDE, BLOCK, BRICK_NODES, COORDINATES, DIAGONAL, HIGH, LOW, Nodes, PADDED, SIDE, STEP,
@@ -15,15 +15,14 @@ use crate::geometry::{Surface, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use core::ops::Range;
 
-/// Nodes are asked for by as many at once.
+/// Nodes whose distances are computed at once.
 const LANES: usize = 4;
-/// In the place of a triangle that is not known.
+/// Marks an unknown triangle.
 pub(super) const NONE: u32 = u32::MAX;
-/// How often neighbours are asked again at most; 6 were found to be needed.
+/// Passes over the neighbours at most; 6 were found to be needed.
 const REPAIRS: usize = 16;
-/// The nodes of a brick closer than this know their nearest triangle before any other asks, in voxels. More than one: what
-/// is found for other nodes may be too far, but not so that two neighbours seem to have room between them when they have
-/// none.
+/// Distance up to which nodes have their exact nearest triangle before the spreading, voxels. More than one: distances of
+/// other nodes may be overstated, but never so that the mesh seems not to pass between two neighbours when it does.
 const EXACT: f32 = 1.01;
 
 /// The nearest triangle of every node of every brick.

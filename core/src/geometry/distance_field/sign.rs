@@ -2,8 +2,8 @@
 //!
 //! Two neighbouring nodes are on the same side if there is no room for the mesh between the two balls that it stays out
 //! of. So around a closed mesh a side spreads from where it is known, and one winding number decides for a whole region.
-//! Around an open mesh the side also changes where there is no mesh, and every brick asks for itself. What is left are
-//! nodes very close to the mesh, that the plane of the nearest triangle decides for, or their own winding number.
+//! Around an open mesh the side also changes where there is no mesh, so every brick computes winding numbers of its own.
+//! For the remaining nodes, very close to the mesh, the plane of the nearest triangle decides, or their own winding number.
 
 use super::brick::{
     ACROSS, ALL, BESIDE, BLOCK, BRICK_NODES, DIAGONAL, HIGH, LOW, Nodes, STEP, compare, coordinates, each,
@@ -15,17 +15,19 @@ use super::{Entry, QUANTUM};
 use crate::geometry::{Point, Surface, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 
-/// Sides; a block's is `UNKNOWN` at first.
+/// Side of a block that has not been decided yet.
 const UNKNOWN: u8 = 0;
+/// Side of a block outside the mesh.
 const OUTSIDE: u8 = 1;
+/// Side of a block inside the mesh.
 pub(super) const INSIDE: u8 = 2;
 
-/// A node that is further from the mesh than this, in voxels, may speak for its region.
+/// Distance from the mesh beyond which a node may decide for its region, voxels.
 const CLEAR: f32 = 0.5;
-/// A winding number this far from one half will not cross it within a brick.
+/// Difference of a winding number from one half that is not crossed within a brick.
 const CERTAIN: f32 = 0.2;
-/// Above this cosine between the normal and the way from the nearest point, the plane of a triangle tells the side: only
-/// at an edge sharper than 37 degrees could another triangle be as near and know better.
+/// Cosine between a triangle's normal and the direction from its nearest point above which the plane of the triangle decides
+/// the side: only at an edge sharper than 37 degrees could another triangle be as near and disagree.
 const ABOVE_FACE: f32 = 0.95;
 
 /// Bytes of working memory.
@@ -223,7 +225,7 @@ impl Sides<'_, '_> {
         }
     }
 
-    /// Open meshes: asks for one winding number in each part of a brick, and for more where that is in doubt.
+    /// Open meshes: computes one winding number in each part of a brick, and more where that one is not certain.
     fn ask_bricks(&mut self) {
         let aabb = self.surface.aabb();
         for brick in 0..self.places.len() {
@@ -257,7 +259,7 @@ impl Sides<'_, '_> {
         }
     }
 
-    /// Open meshes: asks for the blocks without bricks, two by two by two of them together where there is no doubt.
+    /// Open meshes: computes winding numbers for the blocks without bricks, one for two by two by two blocks where it is certain.
     fn ask_blocks(&mut self) {
         let aabb = self.surface.aabb();
         let blocks = self.layout.blocks;
@@ -287,7 +289,7 @@ impl Sides<'_, '_> {
         }
     }
 
-    /// Decides for what is left and writes the signed distances.
+    /// Decides for the remaining nodes and writes the signed distances.
     fn finish(&mut self, nodes: &mut [i16]) {
         for brick in 0..self.places.len() {
             let mut inside = self.sides[1][brick];

@@ -1,4 +1,4 @@
-//! Convex hulls, asked without being built.
+//! Exit distance from a convex hull, without building the hull.
 
 use crate::geometry::{Point, Vector};
 
@@ -7,11 +7,11 @@ use crate::geometry::{Point, Vector};
 const THICKNESS: f32 = 1e-5;
 /// The ray is moved this far within that thickness, so that it meets no vertex and no edge exactly.
 const NUDGE: [f32; 2] = [0.37 * THICKNESS, 0.23 * THICKNESS];
-/// Bounds that are this close, of the extent, are one.
+/// Relative difference at which the lower and the upper bound count as equal, of the extent.
 const AGREED: f64 = 1e-6;
-/// What rounding does to a distance from a plane, of the extent.
+/// Rounding error of a distance from a plane, of the extent.
 const ROUNDING: f64 = 3e-7;
-/// More rounds than any set of points has been seen to need (10 to 20 do, for ten thousand points).
+/// Iterations at most. Ten thousand points take 10 to 20.
 const ROUNDS: usize = 128;
 
 /// Distance in metres along the unit `direction` from `origin`, which lies within or on the convex hull of `points`,

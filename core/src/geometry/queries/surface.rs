@@ -15,7 +15,7 @@ pub struct Surface<'m> {
     /// Corners of each triangle, in tree order.
     triangles: &'m [[Point; 3]],
     bvh: Bvh<'m>,
-    /// For each node of the tree, what its triangles look like from afar.
+    /// For each node of the tree, the far-field approximation of its triangles.
     dipoles: &'m [Dipole],
     /// -1 where the mesh is closed but inside out, 1 otherwise.
     orientation: f32,

@@ -14,7 +14,7 @@ pub struct MassProperties {
     /// Whether every edge is crossed as often one way as the other, so that the mesh bounds a volume.
     /// Vertices at exactly the same position count as one.
     pub is_closed: bool,
-    /// Whether the mesh is closed but its triangles face inwards; then the inside is taken as the outside is.
+    /// Whether the mesh is closed but its triangles face inwards; inside and outside are then exchanged.
     pub is_inside_out: bool,
     /// The volume, m³, of a closed mesh. Where bodies overlap it counts twice.
     pub volume: Option<f32>,

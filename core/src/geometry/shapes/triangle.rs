@@ -18,9 +18,9 @@ pub(crate) fn scaled_normal([a, b, c]: &[Point; 3]) -> Vector {
 /// The point of the triangle that is closest to `p`.
 ///
 /// By the region that `p` is in, as Ericson does it ("Real-Time Collision Detection", 5.1.5). But his differences of
-/// products cancel out where a triangle is thin, and lose the point by as much as the triangle is long. So every
-/// edge is asked for itself, what runs along `ab` is taken off before anything is measured across it, and what is
-/// not above the face goes to the closest edge.
+/// products cancel where a triangle is thin, with errors up to the length of the triangle. So every edge is tested
+/// separately, components along `ab` are subtracted before measuring across it, and a point that is not above the
+/// face is projected onto the closest edge.
 pub(crate) fn closest_point([a, b, c]: &[Point; 3], p: &Point) -> Point {
     let (ab, ac, bc) = (b - a, c - a, c - b);
     let (ap, bp, cp) = (p - a, p - b, p - c);

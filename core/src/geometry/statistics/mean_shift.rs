@@ -17,7 +17,7 @@ struct Mode {
 const SEED_DISTANCE: f32 = 0.5;
 /// A mode has converged when it moves by less than this fraction of the bandwidth.
 const CONVERGED: f32 = 1e-3;
-/// A mode that has not converged after so many steps is taken as it is.
+/// Steps after which a mode that has not converged is used as it is.
 const MAX_STEPS: usize = 300;
 
 /// Bytes of working memory for [`cluster`] over `points`.

@@ -47,7 +47,7 @@ pub struct ObjectCounts {
     pub sites: usize,
 }
 
-/// Sites kept at most: those that are encircled best. No shape has so many different ones.
+/// Sites kept at most: those that are encircled best. No shape in the tests has as many different ones.
 pub(super) const MAX_SITES: usize = 128;
 
 /// Rays start this far off the surface, metres, so that they do not hit where they come from.

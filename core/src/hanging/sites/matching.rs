@@ -16,8 +16,8 @@ pub struct MatchingCounts {
     pub pairs: usize,
     /// Pairs where the support fits into the free space.
     pub fitting: usize,
-    /// Poses, two a fitting pair, found with no more collisions than allowed. Poses that others were sure to
-    /// outrank are not looked at to the end and not counted.
+    /// Poses, two for each fitting pair, with no more collisions than allowed. Poses that cannot get into the list any more
+    /// are not evaluated to the end and not counted.
     pub clear: usize,
 }
 
