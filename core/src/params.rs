@@ -313,7 +313,10 @@ impl core::fmt::Display for ParamsError {
             Self::Gravity { gravity } => {
                 write!(f, "gravity = {gravity:?} has no direction; it must be finite and not zero")
             }
-            Self::CentreOfMass { point } => write!(f, "centre_of_mass = {point:?} is not a point in metres"),
+            Self::CentreOfMass { point } => write!(
+                f,
+                "centre_of_mass = {point:?} is not a point in metres within the range of coordinates"
+            ),
         }
     }
 }

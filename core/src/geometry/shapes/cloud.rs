@@ -54,7 +54,7 @@ pub enum CloudError {
 impl core::fmt::Display for CloudError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Empty => write!(f, "the point cloud has no points"),
+            Self::Empty => write!(f, "the point cloud has no points: give at least one that the camera saw"),
             Self::TooLarge { count, limit } => {
                 write!(f, "the point cloud has {count} points and at most {limit} are possible: thin it out")
             }
@@ -70,7 +70,7 @@ impl core::fmt::Display for CloudError {
                 write!(f, "there are {points} points and {normals} normals: give one for each point, or none")
             }
             Self::Viewpoint { position } => {
-                write!(f, "the viewpoint {position:?} is not a point in metres")
+                write!(f, "the viewpoint {position:?} is not a point in metres within ±{MAX_COORDINATE}")
             }
         }
     }

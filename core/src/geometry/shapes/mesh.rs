@@ -51,7 +51,7 @@ pub enum MeshError {
 impl core::fmt::Display for MeshError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Empty => write!(f, "the mesh has no triangles"),
+            Self::Empty => write!(f, "the mesh has no triangles: export it with faces"),
             Self::TooLarge { count, limit } => {
                 write!(
                     f,
@@ -63,7 +63,10 @@ impl core::fmt::Display for MeshError {
                 "vertex {vertex} is at {position:?}: every coordinate must be a number of metres within ±{MAX_COORDINATE}"
             ),
             Self::Index { triangle, vertex, vertices } => {
-                write!(f, "triangle {triangle} names vertex {vertex}, but there are {vertices} vertices")
+                write!(
+                    f,
+                    "triangle {triangle} names vertex {vertex}, but there are {vertices} vertices, counted from 0"
+                )
             }
             Self::AllDegenerate { triangles } => {
                 write!(
