@@ -16,7 +16,7 @@ impl<'a, T: Copy> Best<'a, T> {
         Self { slots, len }
     }
 
-    /// Puts `item` behind those that it is not better than, unless there is no place for it.
+    /// Inserts `item` behind those that it is not better than. It is dropped if the list is full of better ones.
     pub(crate) fn offer(&mut self, item: T, is_better: impl Fn(&T, &T) -> bool) {
         let place = self.slots[..self.len].partition_point(|other| !is_better(&item, other));
         if place < self.slots.len() {
@@ -26,7 +26,7 @@ impl<'a, T: Copy> Best<'a, T> {
         }
     }
 
-    /// The item that makes way next, if the list is full.
+    /// The worst item if the list is full: the next one to be dropped.
     pub(crate) fn next_to_go(&self) -> Option<&T> {
         if self.len == self.slots.len() { self.slots.last() } else { None }
     }

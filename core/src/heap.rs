@@ -1,4 +1,4 @@
-//! A priority queue whose items can be found and re-weighed, over memory from outside.
+//! A priority queue whose items' weights can change, in the caller's memory.
 
 /// A binary heap of the items 0 to n-1, each with a weight; the heaviest is on top, of equally heavy ones the
 /// first. The items not in the heap stand behind it.

@@ -26,7 +26,7 @@ impl core::fmt::Display for OutOfMemory {
 
 impl core::error::Error for OutOfMemory {}
 
-/// How large the inputs may be that memory is set aside for. What stays below needs no more than this.
+/// Largest sizes of the inputs for which memory is reserved. Smaller inputs need no more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Vertices of the object's mesh.

@@ -10,8 +10,9 @@ use crate::random::Random;
 /// Candidates drawn for each sample that is kept: `M / N`. Yuksel's 5 spreads the samples to 0.70 of the best
 /// possible distance; 3 to 0.66, in 0.4 of the time.
 const OVERSAMPLING: usize = 3;
-/// Yuksel's `beta` and `gamma`, which limit how much candidates on top of each other weigh (eq. 5).
+/// Yuksel's `beta`, which with `gamma` limits the weight of candidates that are very close (eq. 5).
 const BETA: f32 = 0.65;
+/// Yuksel's `gamma` (eq. 5).
 const GAMMA: f32 = 1.5;
 
 /// Bytes of memory for [`sample`].
@@ -33,16 +34,16 @@ pub(crate) const fn scratch_bytes(count: usize) -> usize {
 pub enum SamplingError {
     /// More samples than are possible.
     TooMany {
-        /// How many were asked for.
+        /// Number requested.
         count: usize,
-        /// The most that there may be.
+        /// Largest number allowed.
         limit: usize,
     },
-    /// There is not one place for a normal for each place for a point.
+    /// The slices for points and normals differ in length.
     Lengths {
-        /// Places for points.
+        /// Length of the slice for points.
         points: usize,
-        /// Places for normals.
+        /// Length of the slice for normals.
         normals: usize,
     },
     /// The memory is too small.
@@ -118,8 +119,8 @@ pub(crate) fn sample_into(
     Ok(())
 }
 
-/// Draws points with the normals of their triangles evenly by area, but not kept apart, and in no order, so that any part of them is of
-/// the whole surface too.
+/// Draws points with the normals of their triangles uniformly by area, without a least distance, and in random order, so that
+/// any part of them covers the whole surface.
 pub(crate) fn scatter_into(mesh: &Mesh, seed: u64, points: &mut [Point], normals: &mut [Vector]) {
     let count = points.len();
     // Steps by about the golden section go through all places, and far from each other, if they have no divisor in common.
@@ -197,7 +198,7 @@ struct Cells<'s> {
 }
 
 /// Bits of a cube's number for each axis, and of a candidate's index, which share a sort key. Cubes beyond the
-/// last are taken as the last, which costs time and no more.
+/// last share its number, which costs only time.
 const AXIS_BITS: u32 = 14;
 const INDEX_BITS: u32 = 22;
 const _: () = assert!(3 * AXIS_BITS + INDEX_BITS == u64::BITS);

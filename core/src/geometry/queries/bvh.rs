@@ -14,7 +14,7 @@ pub(crate) struct Node {
     /// First of the two children, which are neighbours, or first item.
     first: u32,
     max: [f32; 3],
-    /// How many items; zero if the node has children instead.
+    /// Number of items; zero for an inner node.
     count: u32,
 }
 
@@ -40,13 +40,13 @@ pub(crate) struct Bvh<'m> {
     nodes: &'m [Node],
 }
 
-/// Leaves hold at most this many items, and at least two unless the tree has only one.
+/// Items of a leaf at most. A leaf has at least two, unless the tree has only one.
 const LEAF_ITEMS: usize = 4;
-/// Where the surface-area heuristic may cut the widest axis.
+/// Bins along the widest axis, between which the surface-area heuristic may cut.
 const BINS: usize = 12;
-/// Below this depth nodes are halved by count, so that no tree is deeper than `MAX_DEPTH`.
+/// Depth from which nodes are halved by count, so that no tree is deeper than `MAX_DEPTH`.
 const HEURISTIC_DEPTH: u32 = 28;
-/// Bounds every traversal stack: `HEURISTIC_DEPTH` plus the halvings of `mesh::MAX_COUNT` items.
+/// Largest depth, which bounds every traversal stack: `HEURISTIC_DEPTH` plus the halvings of `mesh::MAX_COUNT` items.
 const MAX_DEPTH: usize = 60;
 
 impl<'m> Bvh<'m> {

@@ -1,4 +1,4 @@
-//! Neighbours among points.
+//! Nearest neighbours of points.
 
 use super::bvh::{Bvh, Node};
 use crate::geometry::{Aabb, Point};

@@ -1,4 +1,4 @@
-//! Rays that do not slip between triangles.
+//! Watertight intersection of rays with boxes and triangles.
 
 use crate::geometry::{Aabb, Point, Vector};
 
@@ -8,7 +8,7 @@ use crate::geometry::{Aabb, Point, Vector};
 /// Space is sheared so that the ray runs along its largest component, through the origin of the plane of the
 /// other two. A vertex goes to the same rounded place in that plane whichever triangle asks, and which side of an
 /// edge the ray passes is decided exactly there. So triangles that share an edge agree, and a closed mesh has no
-/// hole for a ray. What is hit is a triangle whose corners are off by a few roundings.
+/// hole for a ray. The triangle that is hit has corners that are off by a few rounding errors.
 pub(crate) struct Ray {
     origin: Point,
     /// The axes of the plane, then that of the largest component.
@@ -17,8 +17,8 @@ pub(crate) struct Ray {
     shear: [f32; 3],
     /// One over each component, large but finite for a zero, so that a ray in the plane of a face gives no NaN.
     inverse: Vector,
-    /// How much wider each pair of a box's sides is taken, as a multiple of the direction: more than the roundings of
-    /// the shear, so that no box hides a triangle that the ray hits.
+    /// Amount by which each pair of a box's sides is widened, as a multiple of the direction: more than the rounding
+    /// errors of the shear, so that no box hides a triangle that the ray hits.
     slack: Vector,
 }
 

@@ -36,7 +36,7 @@ struct Dipole {
     area: f32,
 }
 
-/// How many radii away a node may be replaced by its dipole; 2 is Barill et al.'s choice.
+/// Distance in radii from which a node is replaced by its dipole; 2 is Barill et al.'s choice.
 const BETA: f32 = 2.0;
 
 impl<'m> Surface<'m> {
@@ -118,7 +118,7 @@ impl<'m> Surface<'m> {
         self.closest_point_within(point, f32::INFINITY).unwrap_or(*point)
     }
 
-    /// The same if it is closer than `radius` metres: the closer that is to the distance, the faster.
+    /// The closest point if it is closer than `radius` metres. A tight radius is faster.
     pub(crate) fn closest_point_within(&self, point: &Point, radius: f32) -> Option<Point> {
         let mut closest = None;
         self.bvh.visit_near(point, radius * radius, |items, mut limit| {
@@ -149,7 +149,7 @@ impl<'m> Surface<'m> {
 
     /// The generalised winding number: 1 inside a closed mesh and 0 outside, in between near the openings of an
     /// open one (Barill et al. 2018). Distant parts are approximated; on closed meshes of everyday objects the error
-    /// stays below 0.2, which leaves no doubt on which side of one half it is.
+    /// stays below 0.2, so that it does not cross one half.
     pub fn winding_number(&self, point: &Point) -> f32 {
         let mut angle = 0.0;
         self.bvh.descend(|index, node| {

@@ -12,7 +12,7 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The box of nothing: growing it by a point gives that point.
+    /// The empty box: its union with a point is that point.
     pub(crate) const EMPTY: Self = Self {
         min: Point::new(f32::INFINITY, f32::INFINITY, f32::INFINITY),
         max: Point::new(f32::NEG_INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY),

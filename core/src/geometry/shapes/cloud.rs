@@ -1,4 +1,4 @@
-//! Point clouds as the caller holds them, checked at the border.
+//! Point clouds in the caller's memory, validated.
 
 use super::mesh::{MAX_COUNT, is_usable};
 use crate::geometry::{MAX_COORDINATE, Point};
@@ -14,13 +14,13 @@ pub struct Cloud<'a> {
 /// Why a point cloud cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CloudError {
-    /// There is not one point.
+    /// There are no points.
     Empty,
-    /// More points than indices can tell apart.
+    /// More points than a `u32` can index.
     TooLarge {
-        /// How many there are.
+        /// Number given.
         count: usize,
-        /// The most that there may be.
+        /// Largest number allowed.
         limit: usize,
     },
     /// A coordinate is infinite, not a number, or beyond [`MAX_COORDINATE`].
@@ -37,14 +37,14 @@ pub enum CloudError {
         /// Its normal.
         normal: [f32; 3],
     },
-    /// There are normals, but not one for each point.
+    /// The number of normals differs from the number of points.
     NormalCount {
-        /// How many points there are.
+        /// Number of points.
         points: usize,
-        /// How many normals there are.
+        /// Number of normals.
         normals: usize,
     },
-    /// The viewpoint is no point in metres.
+    /// A coordinate of the viewpoint is infinite, not a number, or beyond [`MAX_COORDINATE`].
     Viewpoint {
         /// Its coordinates.
         position: [f32; 3],
@@ -80,7 +80,7 @@ impl core::error::Error for CloudError {}
 
 impl<'a> Cloud<'a> {
     /// Checks `points` (metres) and their `normals`, which point out of the solid. Normals of any length are
-    /// fine; a zero says that the normal of that point is not known. Without normals they are estimated.
+    /// fine; zeros mark a point whose normal is unknown. Unknown normals are estimated.
     pub fn new(points: &'a [[f32; 3]], normals: Option<&'a [[f32; 3]]>) -> Result<Self, CloudError> {
         if points.is_empty() {
             return Err(CloudError::Empty);
@@ -102,7 +102,7 @@ impl<'a> Cloud<'a> {
         Ok(Self { points: bytemuck::cast_slice(points), normals, viewpoint: None })
     }
 
-    /// Says from where the points were seen (metres, in the cloud's frame): estimated normals face it.
+    /// Sets the position of the sensor (metres, in the cloud's frame), which estimated normals face.
     pub fn seen_from(self, viewpoint: [f32; 3]) -> Result<Self, CloudError> {
         if !is_usable(&viewpoint) {
             return Err(CloudError::Viewpoint { position: viewpoint });
@@ -120,7 +120,7 @@ impl<'a> Cloud<'a> {
         self.normals
     }
 
-    /// From where the points were seen.
+    /// Position of the sensor, metres, in the cloud's frame.
     pub fn viewpoint(&self) -> Option<Point> {
         self.viewpoint
     }

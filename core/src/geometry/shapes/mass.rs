@@ -5,27 +5,27 @@ use crate::geometry::Point;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use nalgebra::Matrix3;
 
-/// What a mesh weighs, up to its density.
+/// Mass properties of a mesh of uniform density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct MassProperties {
     /// Surface area, m².
     pub area: f32,
-    /// Whether every edge is crossed as often one way as the other, so that the mesh bounds a volume.
+    /// Whether every directed edge is matched by one in the opposite direction, so that the mesh bounds a volume.
     /// Vertices at exactly the same position count as one.
     pub is_closed: bool,
     /// Whether the mesh is closed but its triangles face inwards; inside and outside are then exchanged.
     pub is_inside_out: bool,
     /// The volume, m³, of a closed mesh. Where bodies overlap it counts twice.
     pub volume: Option<f32>,
-    /// The centroid of that volume; `None` also where bodies that face inwards and outwards cancel out, so that it would be nowhere.
+    /// The centroid of that volume; `None` also where bodies that face inwards and outwards cancel out.
     pub volume_centroid: Option<Point>,
     /// The inertia tensor of a unit mass spread evenly over the volume, or where that has no centroid the surface, about its own
     /// centroid; m².
     pub inertia: Matrix3<f32>,
 }
 
-/// A closed mesh must bound more than this fraction of the volume of its box; below, it is a folded sheet.
+/// Fraction of its bounding box's volume that a closed mesh must enclose; below it is a folded sheet.
 const LEAST_VOLUME: f32 = 1e-6;
 
 impl MassProperties {
@@ -65,7 +65,7 @@ impl MassProperties {
         let centroid = (middle + moment / volume).cast::<f32>();
         let about = |spread: Matrix3<f64>, mean: nalgebra::Vector3<f64>| spread - mean * mean.transpose();
         let mut spread = about(solid / volume, moment / volume);
-        // Inconsistently oriented bodies may cancel out, throw the centroid outside, and spread the volume by less than nothing.
+        // Inconsistently oriented bodies may cancel out, move the centroid outside, and give a tensor that is not positive.
         let is_solid = bounds_volume && aabb.contains(&centroid) && is_positive(&spread);
         if !is_solid {
             spread = about(shell / area, shell_moment / area);

@@ -1,11 +1,11 @@
-//! Triangle meshes as the caller holds them, checked at the border.
+//! Triangle meshes in the caller's memory, validated.
 
 use super::Aabb;
 use crate::geometry::{MAX_COORDINATE, Point};
 
 /// A checked view of a triangle mesh: corners counter-clockwise seen from outside, in metres.
 ///
-/// Open, self-overlapping and multi-body meshes are fine, and so are degenerate triangles, which are passed over.
+/// Open, self-overlapping and multi-body meshes are allowed. Degenerate triangles are ignored.
 /// Nothing is copied.
 #[derive(Clone, Copy, Debug)]
 pub struct Mesh<'a> {
@@ -16,13 +16,13 @@ pub struct Mesh<'a> {
 /// Why a mesh cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MeshError {
-    /// There is not one triangle.
+    /// There are no triangles.
     Empty,
-    /// More triangles or vertices than indices can tell apart.
+    /// More triangles or vertices than a `u32` can index.
     TooLarge {
-        /// How many there are.
+        /// Number given.
         count: usize,
-        /// The most that there may be.
+        /// Largest number allowed.
         limit: usize,
     },
     /// A coordinate is infinite, not a number, or beyond [`MAX_COORDINATE`].
@@ -32,18 +32,18 @@ pub enum MeshError {
         /// Its coordinates.
         position: [f32; 3],
     },
-    /// A triangle names a vertex that does not exist.
+    /// A triangle refers to a vertex that does not exist.
     Index {
         /// Index of the triangle.
         triangle: usize,
-        /// The vertex that it names.
+        /// The vertex that it refers to.
         vertex: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
     /// No triangle has an area.
     AllDegenerate {
-        /// How many triangles there are.
+        /// Number of triangles.
         triangles: usize,
     },
 }

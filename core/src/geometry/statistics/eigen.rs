@@ -3,7 +3,7 @@
 use crate::geometry::Vector;
 use nalgebra::Matrix3;
 
-/// Cyclic Jacobi converges quadratically; six sweeps are past `f32`'s precision for any 3x3 matrix.
+/// Sweeps of cyclic Jacobi. It converges quadratically: six exceed `f32`'s precision for any 3x3 matrix.
 const SWEEPS: usize = 6;
 
 /// The unit eigenvector of the least eigenvalue of a symmetric matrix, of either sign: cyclic Jacobi rotations

@@ -9,13 +9,13 @@ use bytemuck::{Pod, Zeroable};
 #[repr(C)]
 struct Mode {
     position: [f32; 3],
-    /// How many points lie within the bandwidth of it.
+    /// Number of points within the bandwidth.
     support: u32,
 }
 
-/// Searches start this far apart, in bandwidths: close enough that more starts hardly find more modes.
+/// Distance between starting points, in bandwidths: with a smaller one, hardly more modes are found.
 const SEED_DISTANCE: f32 = 0.5;
-/// A mode has converged when it moves by less than this fraction of the bandwidth.
+/// Step below which a mode has converged, as a fraction of the bandwidth.
 const CONVERGED: f32 = 1e-3;
 /// Steps after which a mode that has not converged is used as it is.
 const MAX_STEPS: usize = 300;
@@ -72,7 +72,7 @@ pub(crate) fn cluster(
     Ok(kept)
 }
 
-/// Moves a mode uphill until it rests.
+/// Moves a mode uphill until it converges.
 fn shift(tree: &PointTree, mut position: Point, bandwidth: f32) -> Mode {
     let mut support = 0;
     for _ in 0..MAX_STEPS {
