@@ -297,7 +297,8 @@ typedef struct hangpose_object_info {
   float volume;
   // x, y, z of the centre of mass for which poses are made, metres, in object coordinates.
   float centre_of_mass[3];
-  // Number of samples whose normal points towards the centre of mass, eq. (3).
+  // Number of samples whose normal points towards the centre of mass, eq. (3): with a cosine above
+  // object_contact_cosine, or 0.3 with HANGPOSE_CANDIDATES_CONTACTS.
   uint32_t contact_points;
   // Number of clusters of contact points, eq. (4); 0 with HANGPOSE_CANDIDATES_CONTACTS.
   uint32_t clusters;
@@ -350,9 +351,10 @@ typedef struct hangpose_object_contact {
   // x, y, z of the direction in which the object catches a thin bar under the point best: a unit vector in
   // object coordinates; the sign is arbitrary.
   float bar_direction[3];
-  // Distance that this bar must move down before it can escape sideways, metres; 0 if it is not caught.
+  // Distance that this bar must move from the point towards the centre of mass, which is down when the object hangs,
+  // before it can escape sideways, metres; 0 if it is not caught. The bar is a line without thickness.
   float capture;
-  // Distance to the opposite surface, metres; infinite if there is none.
+  // Distance from the point towards the centre of mass to the opposite surface, metres; infinite if there is none.
   float room;
   // Distance that this bar can extend along its direction before it meets the object, on the longer side,
   // metres; infinite if nothing stops it, as in a hole.
@@ -371,7 +373,8 @@ typedef struct hangpose_supporter_info {
   uint32_t normals_estimated;
   // Number of normals that were not of unit length and were normalised.
   uint32_t normals_renormalised;
-  // Number of points that face up, eq. (2).
+  // Number of points that face up, eq. (2): with a cosine above supporter_contact_cosine, or 0.3 with
+  // HANGPOSE_CANDIDATES_CONTACTS.
   uint32_t contact_points;
   // Number of clusters of contact points; 0 with HANGPOSE_CANDIDATES_CONTACTS.
   uint32_t clusters;

@@ -105,7 +105,8 @@ pub struct hangpose_object_info {
     pub volume: f32,
     /// x, y, z of the centre of mass for which poses are made, metres, in object coordinates.
     pub centre_of_mass: [f32; 3],
-    /// Number of samples whose normal points towards the centre of mass, eq. (3).
+    /// Number of samples whose normal points towards the centre of mass, eq. (3): with a cosine above
+    /// object_contact_cosine, or 0.3 with HANGPOSE_CANDIDATES_CONTACTS.
     pub contact_points: u32,
     /// Number of clusters of contact points, eq. (4); 0 with HANGPOSE_CANDIDATES_CONTACTS.
     pub clusters: u32,
@@ -235,9 +236,10 @@ pub struct hangpose_object_contact {
     /// x, y, z of the direction in which the object catches a thin bar under the point best: a unit vector in
     /// object coordinates; the sign is arbitrary.
     pub bar_direction: [f32; 3],
-    /// Distance that this bar must move down before it can escape sideways, metres; 0 if it is not caught.
+    /// Distance that this bar must move from the point towards the centre of mass, which is down when the object hangs,
+    /// before it can escape sideways, metres; 0 if it is not caught. The bar is a line without thickness.
     pub capture: f32,
-    /// Distance to the opposite surface, metres; infinite if there is none.
+    /// Distance from the point towards the centre of mass to the opposite surface, metres; infinite if there is none.
     pub room: f32,
     /// Distance that this bar can extend along its direction before it meets the object, on the longer side,
     /// metres; infinite if nothing stops it, as in a hole.

@@ -158,7 +158,8 @@ pub struct hangpose_supporter_info {
     pub normals_estimated: u32,
     /// Number of normals that were not of unit length and were normalised.
     pub normals_renormalised: u32,
-    /// Number of points that face up, eq. (2).
+    /// Number of points that face up, eq. (2): with a cosine above supporter_contact_cosine, or 0.3 with
+    /// HANGPOSE_CANDIDATES_CONTACTS.
     pub contact_points: u32,
     /// Number of clusters of contact points; 0 with HANGPOSE_CANDIDATES_CONTACTS.
     pub clusters: u32,

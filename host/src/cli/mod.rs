@@ -107,7 +107,8 @@ struct MethodArguments {
     /// Profile of constants: the published method, or the default, which also simulates the release of poses.
     #[arg(long, value_enum, default_value_t = Profile::Default)]
     profile: Profile,
-    /// TOML file of constants that override the profile's, as in `radius_ratio = 0.9`.
+    /// TOML file of constants that override the profile's, as in `radius_ratio = 0.9`. `predict --json` prints all of them
+    /// under `params`.
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
     /// Seed of the samples; the default is the seed of the params file, or 0.
@@ -118,11 +119,11 @@ struct MethodArguments {
 /// Options for the supporter's point cloud and normals.
 #[derive(Args)]
 struct CloudArguments {
-    /// Number of points that a supporter mesh is sampled to.
+    /// For supporters: number of points that a mesh is sampled to.
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(100..=500_000))]
     supporter_points: u32,
-    /// Camera position that orients the normals of a cloud without normals, in metres in the supporter frame (after
-    /// scale and up axis).
+    /// For supporters: camera position that orients normals that are missing or do not agree in sign, in metres in the
+    /// supporter frame (after scale and up axis).
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, allow_hyphen_values = true)]
     viewpoint: Option<[f32; 3]>,
 }

@@ -18,9 +18,10 @@ pub struct ObjectContact {
     pub normal: Vector,
     /// Unit vector along the thin bar that the object catches best below the point; its sign has no meaning.
     pub bar_direction: Vector,
-    /// Capture depth: how far such a bar must descend before it can leave sideways, metres; 0 if it is not caught.
+    /// Capture depth: how far such a bar, a line without thickness, must move from the point towards the centre of mass, which is
+    /// down when the object hangs, before it can leave sideways, metres; 0 if it is not caught.
     pub capture: f32,
-    /// Distance to the surface opposite, metres; infinite if there is none.
+    /// Distance from the point towards the centre of mass to the surface opposite, metres; infinite if there is none.
     pub room: f32,
     /// Free length for such a bar along its direction, towards the freer side, metres; infinite where nothing stops it,
     /// as in a hole.
