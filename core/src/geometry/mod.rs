@@ -15,6 +15,7 @@ mod statistics;
 mod vector;
 
 pub use distance_field::DistanceField;
+pub(crate) use queries::PointTreeSlots;
 pub use queries::{Neighbour, PointTree, Surface, hull};
 pub(crate) use shapes::scaled_normal;
 pub use shapes::{Aabb, Cloud, CloudError, MAX_COUNT, MassProperties, Mesh, MeshError};

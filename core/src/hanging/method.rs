@@ -146,6 +146,11 @@ pub(super) const fn supporter_scratch_bytes(points: usize) -> usize {
     sites::supporter_scratch_bytes(points)
 }
 
+/// Whether duplicates and strays stay in the cloud, as in the published method.
+pub(super) fn takes_cloud_as_it_is(params: &Params) -> bool {
+    params.candidates == Candidates::Sites
+}
+
 impl<'m> SupporterSlots<'m> {
     pub(super) fn new(params: &Params, arena: &mut Arena<'m>) -> Result<Self, OutOfMemory> {
         Ok(match params.candidates {

@@ -24,6 +24,7 @@ mod supporter;
 #[cfg(test)]
 mod tests;
 
+pub use crate::perception::cleaning::CleaningCounts;
 pub use counts::Counts;
 pub use error::{AnalysisError, PredictError};
 pub use let_go::{LetGo, let_go};

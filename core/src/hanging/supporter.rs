@@ -3,11 +3,12 @@
 use super::AnalysisError;
 use super::method::{self, SupporterPlaces, SupporterSlots};
 use super::samples::SupporterCloud;
-use crate::geometry::{Cloud, PointTree, Vector};
+use crate::geometry::{Cloud, PointTree, PointTreeSlots, Vector};
 use crate::mechanics::{Room, Support};
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::Params;
+use crate::perception::cleaning::{self, Cleaned, CleaningCounts};
 use crate::perception::normals;
 
 /// Normals shorter than this are taken as not given.
@@ -21,6 +22,7 @@ const UNIT_LENGTH: f32 = 1e-3;
 pub struct Supporter<'m> {
     support: Support<'m>,
     places: SupporterPlaces<'m>,
+    cleaning: CleaningCounts,
     normals: NormalCounts,
     work: Work,
     stopped: Option<Stop>,
@@ -45,13 +47,13 @@ impl<'m> Supporter<'m> {
         let model = PointTree::bytes(points)
             .saturating_add(method::supporter_bytes())
             .saturating_add(Room::bytes(points));
-        let scratch = larger(
-            PointTree::scratch_bytes(points),
-            array_bytes::<Vector>(points).saturating_add(larger(
-                normals::scratch_bytes(points),
-                larger(method::supporter_scratch_bytes(points), Support::scratch_bytes(points)),
-            )),
+        let steps = larger(
+            normals::scratch_bytes(points),
+            larger(method::supporter_scratch_bytes(points), Support::scratch_bytes(points)),
         );
+        let scratch = array_bytes::<Vector>(points)
+            .saturating_add(cleaning::scratch_bytes(points))
+            .saturating_add(larger(PointTree::scratch_bytes(points), steps));
         model_bytes(model.saturating_add(scratch))
     }
 
@@ -67,37 +69,31 @@ impl<'m> Supporter<'m> {
         let mut arena = Arena::new(memory, Self::bytes(&Limits::of_points(points.len())))?;
         let mut meter = Meter::new(monitor);
 
-        let tree = PointTree::build(points, &mut arena)?;
+        let mut tree = PointTreeSlots::new(points.len(), &mut arena)?;
         let room = Room::new(points.len(), &mut arena)?;
         let slots = SupporterSlots::new(params, &mut arena)?;
         let mut scratch = arena.scratch();
-        let in_tree_order = scratch.slice::<Vector>(points.len())?;
-        let mut normals = NormalCounts::default();
-        if let Some(given) = cloud.normals() {
-            for (normal, &index) in in_tree_order.iter_mut().zip(tree.order()) {
-                let given = Vector::from(given[index as usize]);
-                let length = given.norm();
-                if length > NO_DIRECTION {
-                    *normal = given / length;
-                    normals.renormalised += usize::from((length - 1.0).abs() > UNIT_LENGTH);
-                }
-            }
-        }
+        let given = scratch.slice::<Vector>(points.len())?;
+        let mut normals =
+            NormalCounts { renormalised: read_normals(cloud, given), ..NormalCounts::default() };
+        let Cleaned { normals: in_tree_order, spacings, is_on_plane, counts: cleaning } =
+            cleaning::clean(points, given, method::takes_cloud_as_it_is(params), &mut tree, &mut scratch)?;
+        let tree = tree.into_tree();
         let viewpoint = cloud.viewpoint();
         let completed = normals::complete(&tree, in_tree_order, viewpoint, params.up(), scratch.scratch())?;
         (normals.estimated, normals.reversed) = (completed.estimated, completed.reversed);
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
 
         let support = match params.uses_mechanics() {
-            true => Support::fit(tree, in_tree_order, room, scratch.scratch())?,
+            true => Support::fit(tree, in_tree_order, spacings, room, scratch.scratch())?,
             false => Support::bare(tree),
         };
-        let seen = SupporterCloud { tree: &tree, points, normals: in_tree_order, params };
+        let seen = SupporterCloud { tree: &tree, points, normals: in_tree_order, is_on_plane, params };
         let (places, stopped) = slots.find(&seen, &mut meter, scratch)?;
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
         }
-        Ok(Self { support, places, normals, work: meter.work, stopped })
+        Ok(Self { support, places, cleaning, normals, work: meter.work, stopped })
     }
 
     /// The supporter as mechanics sees it.
@@ -120,6 +116,11 @@ impl<'m> Supporter<'m> {
         &self.places
     }
 
+    /// Points that were merged and dropped.
+    pub fn cleaning(&self) -> CleaningCounts {
+        self.cleaning
+    }
+
     /// What had to be done to the normals that were given.
     pub fn normals(&self) -> NormalCounts {
         self.normals
@@ -134,4 +135,19 @@ impl<'m> Supporter<'m> {
     pub fn stopped(&self) -> Option<Stop> {
         self.stopped
     }
+}
+
+/// Writes the normals of a cloud at unit length, zero where they are not known, and returns how many were not of unit
+/// length.
+fn read_normals(cloud: &Cloud, normals: &mut [Vector]) -> usize {
+    let mut renormalised = 0;
+    for (normal, given) in normals.iter_mut().zip(cloud.normals().unwrap_or_default()) {
+        let given = Vector::from(*given);
+        let length = given.norm();
+        if length > NO_DIRECTION {
+            *normal = given / length;
+            renormalised += usize::from((length - 1.0).abs() > UNIT_LENGTH);
+        }
+    }
+    renormalised
 }

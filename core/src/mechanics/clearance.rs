@@ -3,7 +3,7 @@
 use super::constants::{FIELD_BAND_RATIO, FIELD_ERROR, PATCH_PENETRATION};
 use super::touch::nearest_on_patch;
 use super::{Body, Support};
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, Vector};
 use crate::monitor::{Meter, Stop};
 
 /// Returns a point of the supporter that is within `clearance` metres of the object at `pose` or deep inside
@@ -26,7 +26,7 @@ pub(crate) fn first_within(
 /// Whether the supporter is clear of the object's surface at `pose`. Three conditions must hold:
 ///
 /// - Every point of the supporter is farther than `clearance` metres from the mesh, exactly.
-/// - No bar of the supporter passes through the mesh between its points. This covers meshes without an
+/// - No bar and no plane of the supporter passes through the mesh between its points. This covers meshes without an
 ///   inside.
 /// - No part of the mesh that the field misses, such as the strings of a racquet, is closer to a point than
 ///   half the reach of the largest patch. Such a part may pass between the points.
@@ -55,7 +55,7 @@ pub(crate) fn is_off_surface(
 
 /// Returns the first part of the supporter that is not clear of the object: a point for which
 /// `is_point_clear` is false, the deepest point of a patch that penetrates the object by more than
-/// [`PATCH_PENETRATION`], or the centre of a patch of a bar whose segment `crosses` the object.
+/// [`PATCH_PENETRATION`], or the centre of a patch of a bar or plane of which a segment `crosses` the object.
 ///
 /// The closures take object coordinates. `is_ball_clear` is true if every point within a radius of a point is
 /// clear; it prunes the tree, as does the distance to the bounding sphere: everything farther than `distance`
@@ -80,8 +80,9 @@ fn first_hit(
         {
             return Some(pose * nearest.at);
         }
-        let [from, to] = patch.bar_segment().map(|offset| at + rotation.inverse_transform_vector(&offset));
-        crosses(&from, &to).then_some(position)
+        let place = |offset: Vector| at + rotation.inverse_transform_vector(&offset);
+        let is_crossed = |[from, to]: [Vector; 2]| crosses(&place(from), &place(to));
+        patch.filled_segments().any(is_crossed).then_some(position)
     };
     let (mut found, mut queries) = (None, 0);
     support.tree.bvh().descend(|_, node| {

@@ -179,11 +179,11 @@ pub(super) const WIRE_END_RATIO: f32 = 1.5;
 /// underestimated. Smaller: errors of the normals are amplified there. Chosen by hand.
 pub(super) const CURVATURE_REGULARISATION: f32 = 0.01;
 /// Fraction of a patch's half extent that is certain to be filled by the supporter, for the test whether a
-/// bar passes through the object.
+/// bar or a plane passes through the object.
 ///
 /// Larger: poses beside a bar's end are rejected. Smaller: a thin sheet is missed between two points. Chosen
 /// by hand.
-pub(super) const BAR_SEGMENT_RATIO: f32 = 0.7;
+pub(super) const FILLED_RATIO: f32 = 0.7;
 /// Fraction of a patch's half extent beyond which a contact is on the rim.
 ///
 /// Larger: rims are missed, and the body's normal acts where the patches' should. Smaller: contacts inside a
@@ -364,6 +364,15 @@ pub(super) const MAX_FIT_POINTS: usize = 128;
 ///
 /// Larger: a steadier median. Smaller: less time. Chosen by hand.
 pub(super) const SPACING_PROBES: usize = 64;
+/// Number of points, itself included, over which the spacing around a point is averaged by the median.
+///
+/// Larger: the spacing of another part of the cloud counts as well. Smaller: chance decides. Chosen by hand.
+pub(super) const SPACING_NEIGHBOURS: usize = 9;
+/// Ratio of the spacing around a point to that of the cloud beyond which the local one counts.
+///
+/// Larger: a sparse wall behind a dense hook has gaps between its patches. Smaller: chance makes patches of a uniform cloud
+/// differ in size, with gaps between them. Over points sampled at random the median of nine is within a factor of 1.6.
+pub(super) const SPACING_RATIO: f32 = 2.0;
 /// Number of power iterations for the direction of a wire.
 ///
 /// A wire's greatest eigenvalue is at least 6.7 times the next one ([`WIRE_VARIANCE_RATIO`]), so each

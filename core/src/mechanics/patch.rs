@@ -1,6 +1,6 @@
 //! A patch: a model of the supporter's surface around one of its points.
 
-use super::constants::{BAR_SEGMENT_RATIO, INITIAL_CURVATURE, MIN_PATCH_EXTENT, RIM_RATIO};
+use super::constants::{FILLED_RATIO, INITIAL_CURVATURE, MIN_PATCH_EXTENT, RIM_RATIO};
 use crate::geometry::{Vector, unit_or};
 use bytemuck::{Pod, Zeroable};
 
@@ -102,13 +102,16 @@ impl Patch {
         libm::sqrtf(a * a + b * b)
     }
 
-    /// Offsets from the centre to the two ends of a segment along a bar (of a wire, on its axis), in
-    /// supporter coordinates, metres; both are zero if the patch is not that of a bar. Where the segment
-    /// passes through an object, the supporter does, although no point lies there.
-    pub(crate) fn bar_segment(&self) -> [Vector; 2] {
+    /// Offsets from the centre to the two ends of segments that the surface is certain to fill, along a bar (of a wire, on
+    /// its axis), and along and across a plane, in supporter coordinates, metres. Where one passes through an object, the
+    /// supporter does, although no point lies there.
+    pub(crate) fn filled_segments(&self) -> impl Iterator<Item = [Vector; 2]> {
         let inwards = self.normal * self.wire_radius();
-        let length = if self.straight == 1 { BAR_SEGMENT_RATIO * self.extents[0] } else { 0.0 };
-        [length, -length].map(|reach| self.along * reach - inwards)
+        let axes = [self.along, self.across()].into_iter().zip(self.extents).take(self.straight as usize);
+        axes.map(move |(axis, extent)| {
+            let reach = axis * (FILLED_RATIO * extent);
+            [reach - inwards, -reach - inwards]
+        })
     }
 
     /// Radius of the wire, metres; 0 if the patch is not that of a wire.

@@ -1,6 +1,9 @@
 //! The supporter in the simulation: surface patches at representative points of its cloud.
 
-use super::constants::{GROUP_SIZE, REPRESENTATIVE_COSINE, REPRESENTATIVE_SPACING, SPACING_PROBES};
+use super::constants::{
+    GROUP_SIZE, REPRESENTATIVE_COSINE, REPRESENTATIVE_SPACING, SPACING_NEIGHBOURS, SPACING_PROBES,
+    SPACING_RATIO,
+};
 use super::fit::fit_patch;
 use super::patch::Patch;
 use crate::geometry::{Aabb, Neighbour, Point, PointTree, Vector};
@@ -110,17 +113,18 @@ impl<'a> Support<'a> {
     }
 
     /// Chooses representatives and fits their patches. Every other point has a representative within
-    /// [`REPRESENTATIVE_SPACING`] whose normal is similar. `normals` are in tree order.
+    /// [`REPRESENTATIVE_SPACING`] whose normal is similar. `normals` and `spacings`, the distance between points around
+    /// each, metres, are in tree order.
     pub(crate) fn fit(
         tree: PointTree<'a>,
         normals: &[Vector],
+        spacings: &[f32],
         room: Room<'a>,
         mut scratch: Arena,
     ) -> Result<Self, OutOfMemory> {
         let (points, Room { patches, representatives, groups }) = (tree.points(), room);
         let is_covered = scratch.slice::<u8>(points.len())?;
-        let spacing = spacing(&tree);
-        let apart = spacing.max(REPRESENTATIVE_SPACING);
+        let overall = overall_spacing(spacings);
         let mut count = 0;
         for index in 0..points.len() {
             if is_covered[index] > 0 {
@@ -132,7 +136,8 @@ impl<'a> Support<'a> {
                     is_covered[other] = 1;
                 }
             });
-            patches[count] = fit_patch(&tree, normals, index, apart, spacing);
+            let spacing = spacing_around(&tree, spacings, index, overall);
+            patches[count] = fit_patch(&tree, normals, index, spacing.max(REPRESENTATIVE_SPACING), spacing);
             representatives[count] = index as u32;
             count += 1;
         }
@@ -151,17 +156,26 @@ impl<'a> Support<'a> {
     }
 }
 
-/// Spacing of the cloud, metres: the median distance from a point to its fourth neighbour, over some of the
-/// points.
-fn spacing(tree: &PointTree) -> f32 {
-    let points = tree.points();
-    let mut distances = [0.0; SPACING_PROBES];
-    for (k, distance) in distances.iter_mut().enumerate() {
-        // The nearest point found is the point itself.
-        let mut found = [Neighbour::default(); 5];
-        let found = tree.k_nearest(&points[k * points.len() / SPACING_PROBES], &mut found);
-        *distance = found.last().map_or(0.0, |neighbour| libm::sqrtf(neighbour.distance_squared));
+/// Spacing of the cloud, metres: the median over some of the points.
+fn overall_spacing(spacings: &[f32]) -> f32 {
+    let mut probes: [f32; SPACING_PROBES] =
+        core::array::from_fn(|k| spacings[k * spacings.len() / SPACING_PROBES]);
+    probes.sort_unstable_by(f32::total_cmp);
+    probes[SPACING_PROBES / 2]
+}
+
+/// Spacing around a point, metres: that of the cloud, unless the points around are much denser or sparser, as those of a
+/// wall behind a hook.
+fn spacing_around(tree: &PointTree, spacings: &[f32], index: usize, overall: f32) -> f32 {
+    let mut found = [Neighbour::default(); SPACING_NEIGHBOURS];
+    let found = tree.k_nearest(&tree.points()[index], &mut found);
+    let mut around = [0.0; SPACING_NEIGHBOURS];
+    for (spacing, neighbour) in around.iter_mut().zip(found) {
+        *spacing = spacings[neighbour.index as usize];
     }
-    distances.sort_unstable_by(f32::total_cmp);
-    distances[SPACING_PROBES / 2]
+    let around = &mut around[..found.len()];
+    around.sort_unstable_by(f32::total_cmp);
+    let local = around[around.len() / 2];
+    let is_like_overall = local <= SPACING_RATIO * overall && overall <= SPACING_RATIO * local;
+    if is_like_overall { overall } else { local }
 }

@@ -10,6 +10,7 @@ use crate::geometry::{DistanceField, MassProperties, Point, PointTree, Pose, Sur
 use crate::memory::{Arena, model_bytes};
 use crate::monitor::{Meter, Monitor};
 use crate::params::Params;
+use crate::perception::cleaning::spacing;
 use crate::random::Random;
 use crate::test_shapes::{self, Shape};
 use nalgebra::{Translation3, UnitQuaternion};
@@ -60,7 +61,9 @@ impl Scene {
         let tree = PointTree::build(&points, &mut arena).unwrap();
         let normals: Vec<Vector> = tree.order().iter().map(|&i| Vector::from(normals[i as usize])).collect();
         let room = Room::new(count, &mut arena).unwrap();
-        let support = Support::fit(tree, &normals, room, arena.scratch()).unwrap();
+        let mut spacings = vec![0.0; count];
+        spacing::measure(&tree, &mut spacings);
+        let support = Support::fit(tree, &normals, &spacings, room, arena.scratch()).unwrap();
         let centre = mass.volume_centroid.expect("the test shapes are closed");
         let reach = mesh.vertices().iter().map(|v| (Point::from(*v) - centre).norm()).fold(0.0, f32::max);
         let body = Body {

@@ -91,6 +91,11 @@ impl<'m> Bvh<'m> {
         Self { nodes: &nodes[..used] }
     }
 
+    /// The tree that [`build`](Self::build) made in `nodes`.
+    pub(crate) fn of(nodes: &'m [Node]) -> Self {
+        Self { nodes }
+    }
+
     pub(crate) fn nodes(&self) -> &'m [Node] {
         self.nodes
     }

@@ -22,6 +22,59 @@ pub struct Neighbour {
     pub distance_squared: f32,
 }
 
+/// Memory for a tree, which can be filled again with fewer points.
+pub(crate) struct PointTreeSlots<'m> {
+    points: &'m mut [Point],
+    order: &'m mut [u32],
+    nodes: &'m mut [Node],
+    /// Points and nodes in use.
+    used: [usize; 2],
+}
+
+impl<'m> PointTreeSlots<'m> {
+    /// Memory for at most `points` points.
+    pub(crate) fn new(points: usize, arena: &mut Arena<'m>) -> Result<Self, OutOfMemory> {
+        Ok(Self {
+            order: arena.slice(points)?,
+            points: arena.slice(points)?,
+            nodes: arena.slice(Bvh::max_nodes(points))?,
+            used: [0; 2],
+        })
+    }
+
+    /// Arranges `points`, at least one, instead of those before.
+    pub(crate) fn fill(&mut self, points: &[Point], mut scratch: Arena) -> Result<(), OutOfMemory> {
+        let order = &mut self.order[..points.len()];
+        let centres = scratch.slice::<[f32; 3]>(points.len())?;
+        for (slot, index) in order.iter_mut().zip(0..) {
+            *slot = index;
+        }
+        let bvh = Bvh::build(order, |index| Aabb::of([&points[index as usize]]), self.nodes, centres);
+        self.used = [points.len(), bvh.nodes().len()];
+        for (slot, &index) in self.points.iter_mut().zip(order.iter()) {
+            *slot = points[index as usize];
+        }
+        Ok(())
+    }
+
+    /// Names the points by other indices: `names` has one for each point that the tree was filled with.
+    pub(crate) fn rename(&mut self, names: &[u32]) {
+        for index in &mut self.order[..self.used[0]] {
+            *index = names[*index as usize];
+        }
+    }
+
+    /// The tree as it is now.
+    pub(crate) fn tree(&self) -> PointTree<'_> {
+        PointTree::view(self.points, self.order, self.nodes, self.used)
+    }
+
+    /// The tree for as long as the memory lives.
+    pub(crate) fn into_tree(self) -> PointTree<'m> {
+        PointTree::view(self.points, self.order, self.nodes, self.used)
+    }
+}
+
 impl Neighbour {
     fn is_before(&self, other: &Self) -> bool {
         self.distance_squared.total_cmp(&other.distance_squared).then(self.index.cmp(&other.index)).is_lt()
@@ -45,19 +98,14 @@ impl<'m> PointTree<'m> {
 
     /// Arranges `points`, at least one.
     pub(crate) fn build(points: &[Point], arena: &mut Arena<'m>) -> Result<Self, OutOfMemory> {
-        let order = arena.slice::<u32>(points.len())?;
-        let sorted = arena.slice::<Point>(points.len())?;
-        let nodes = arena.slice::<Node>(Bvh::max_nodes(points.len()))?;
-        let mut scratch = arena.scratch();
-        let centres = scratch.slice::<[f32; 3]>(points.len())?;
-        for (slot, index) in order.iter_mut().zip(0..) {
-            *slot = index;
-        }
-        let bvh = Bvh::build(order, |index| Aabb::of([&points[index as usize]]), nodes, centres);
-        for (slot, &index) in sorted.iter_mut().zip(order.iter()) {
-            *slot = points[index as usize];
-        }
-        Ok(Self { points: sorted, order, bvh })
+        let mut slots = PointTreeSlots::new(points.len(), arena)?;
+        slots.fill(points, arena.scratch())?;
+        Ok(slots.into_tree())
+    }
+
+    fn view(points: &'m [Point], order: &'m [u32], nodes: &'m [Node], used: [usize; 2]) -> Self {
+        let [count, nodes_used] = used;
+        Self { points: &points[..count], order: &order[..count], bvh: Bvh::of(&nodes[..nodes_used]) }
     }
 
     /// The points, in tree order.
@@ -65,7 +113,8 @@ impl<'m> PointTree<'m> {
         self.points
     }
 
-    /// For each point in tree order, its index in the slice that the tree was built from.
+    /// For each point in tree order, its index in the slice that the tree was built from; in the tree of a supporter, that
+    /// of a point of the caller's cloud, of which strays and duplicates were left out.
     pub fn order(&self) -> &'m [u32] {
         self.order
     }

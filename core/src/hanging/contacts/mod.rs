@@ -68,7 +68,8 @@ pub(super) fn find_on_supporter(
     meter: &mut Meter,
 ) -> (SupporterCounts, Option<Stop>) {
     let up = cloud.params.up();
-    support_contact::Search { tree: cloud.tree, normals: cloud.normals, up }.find(slots, meter)
+    let SupporterCloud { tree, normals, is_on_plane, .. } = *cloud;
+    support_contact::Search { tree, normals, is_on_plane, up }.find(slots, meter)
 }
 
 /// Bytes of working memory for [`search`], beside that for settling.

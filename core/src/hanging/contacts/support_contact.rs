@@ -24,6 +24,8 @@ pub(super) struct Search<'a> {
     pub(super) tree: &'a PointTree<'a>,
     /// In tree order.
     pub(super) normals: &'a [Vector],
+    /// 1 for points on which nothing hangs, in tree order.
+    pub(super) is_on_plane: &'a [u8],
     pub(super) up: Vector,
 }
 
@@ -35,7 +37,7 @@ impl Search<'_> {
         meter: &mut Meter,
     ) -> (SupporterCounts, Option<Stop>) {
         let [.., least] = MIN_SUPPORT_COSINES;
-        let contact_points = self.normals.iter().filter(|normal| normal.dot(&self.up) >= least).count();
+        let contact_points = self.facing_up(least).count();
         let mut apart = SUPPORT_SPACING;
         let contacts = loop {
             match self.spread(apart, slots) {
@@ -52,13 +54,21 @@ impl Search<'_> {
         (SupporterCounts { contact_points, contacts }, None)
     }
 
+    /// Points that are not on a plane, with their normals, whose normal has at least this cosine with up.
+    fn facing_up(&self, least: f32) -> impl Iterator<Item = (&Point, &Vector)> {
+        let points = self.tree.points().iter().zip(self.normals).zip(self.is_on_plane);
+        let faces_up = move |normal: &Vector| normal.dot(&self.up) >= least;
+        points
+            .filter(move |((_, normal), on_plane)| **on_plane == 0 && faces_up(normal))
+            .map(|(point, _)| point)
+    }
+
     /// Fills `slots` with contacts at least this far apart, and returns their number; `None` if there are more than
     /// `slots`.
     fn spread(&self, apart: f32, slots: &mut [SupportContact]) -> Option<usize> {
         let mut count = 0;
         for least in MIN_SUPPORT_COSINES {
-            let points = self.tree.points().iter().zip(self.normals);
-            for (point, normal) in points.filter(|(_, normal)| normal.dot(&self.up) >= least) {
+            for (point, normal) in self.facing_up(least) {
                 let is_near =
                     |other: &SupportContact| (other.position - point).norm_squared() < apart * apart;
                 if slots[..count].iter().any(is_near) {

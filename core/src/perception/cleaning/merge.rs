@@ -1,0 +1,186 @@
+//! Points that say the same as others: duplicates, and more points than the mechanics can tell apart.
+
+use super::planes;
+use crate::geometry::{Point, Vector, unit_or};
+use crate::memory::{Arena, OutOfMemory, array_bytes};
+
+/// Edge of the cubes within which the points of a dense cloud are merged, metres: less than half of the distance between
+/// the patches that the mechanics fits, and about the noise of a good depth camera.
+const CUBE: f32 = 0.001;
+/// Edge of the cubes within which the points on a large plane are merged, metres. Nothing hangs there, and a plane needs few
+/// points to stop an object: less than the mechanics bridges.
+const PLANE_CUBE: f32 = 0.01;
+/// Keeps the cubes of planes apart from others.
+const PLANE_TAG: u32 = 1 << 31;
+/// Points per occupied cube above which a cloud is dense.
+const DENSE: usize = 2;
+
+/// The points that are left, in the order of the first point of each.
+pub(super) struct Kept<'s> {
+    /// Mean of the merged points, metres.
+    pub(super) points: &'s mut [Point],
+    /// Unit normals, zero where unknown.
+    pub(super) normals: &'s mut [Vector],
+    /// Index of the first of the merged points in the caller's cloud.
+    pub(super) names: &'s mut [u32],
+    /// 1 for points on large planes.
+    pub(super) is_on_plane: &'s mut [u8],
+}
+
+/// Bytes of what is kept of a cloud of `points`.
+pub(super) const fn bytes(points: usize) -> usize {
+    array_bytes::<Point>(points)
+        .saturating_add(array_bytes::<Vector>(points))
+        .saturating_add(array_bytes::<u32>(points))
+        .saturating_add(array_bytes::<u8>(points))
+}
+
+/// Bytes of working memory of [`merge`].
+pub(super) const fn scratch_bytes(points: usize) -> usize {
+    array_bytes::<u32>(table_size(points))
+        .saturating_add(array_bytes::<u32>(points))
+        .saturating_add(array_bytes::<Point>(points))
+        .saturating_add(array_bytes::<u8>(points))
+        .saturating_add(planes::scratch_bytes(points))
+}
+
+/// Entries of the hash table: a power of two, at most half of them in use.
+const fn table_size(points: usize) -> usize {
+    points.saturating_mul(2).saturating_add(1).next_power_of_two()
+}
+
+/// Merges the points at the same place; in a dense cloud and on large planes, those in the same cube. Points whose known normals differ by
+/// more than 90 degrees, as those on the two sides of a sheet, stay apart.
+pub(super) fn merge<'s>(
+    points: &[Point],
+    normals: &[Vector],
+    arena: &mut Arena<'s>,
+) -> Result<Kept<'s>, OutOfMemory> {
+    let Kept { points: sums, normals: normal_sums, names, is_on_plane } = Kept::new(points.len(), arena)?;
+    let mut scratch = arena.scratch();
+    let table = scratch.slice::<u32>(table_size(points.len()))?;
+    let members = scratch.slice::<u32>(points.len())?;
+    let firsts = scratch.slice::<Point>(points.len())?;
+    let on_plane = scratch.slice::<u8>(points.len())?;
+    planes::mark(points, on_plane, scratch)?;
+    let cubes = group(normals, |index| cube(&points[index], CUBE), table, names, |_, _| {});
+    let is_dense = points.len() > DENSE * cubes;
+    let place = |index: usize| match (on_plane[index], is_dense) {
+        (1, _) => cube(&points[index], PLANE_CUBE).map(|x| x ^ PLANE_TAG),
+        (_, true) => cube(&points[index], CUBE),
+        (_, false) => bits(&points[index]),
+    };
+    // Sums of offsets from the first point, which keep their precision.
+    let count = group(normals, place, table, names, |index, kept| {
+        if members[kept] == 0 {
+            (firsts[kept], is_on_plane[kept]) = (points[index], on_plane[index]);
+            (sums[kept], normal_sums[kept]) = (Point::origin(), normals[index]);
+        } else {
+            sums[kept] += points[index] - firsts[kept];
+            normal_sums[kept] += normals[index];
+        }
+        members[kept] += 1;
+    });
+    for k in 0..count {
+        sums[k] = firsts[k] + sums[k].coords / members[k] as f32;
+        if members[k] > 1 {
+            normal_sums[k] = unit_or(normal_sums[k], Vector::zeros());
+        }
+    }
+    Ok(Kept { points: sums, normals: normal_sums, names, is_on_plane }.first(count))
+}
+
+impl<'s> Kept<'s> {
+    fn new(points: usize, arena: &mut Arena<'s>) -> Result<Self, OutOfMemory> {
+        Ok(Self {
+            points: arena.slice(points)?,
+            normals: arena.slice(points)?,
+            names: arena.slice(points)?,
+            is_on_plane: arena.slice(points)?,
+        })
+    }
+
+    /// The first `count` points.
+    fn first(self, count: usize) -> Self {
+        Self {
+            points: &mut self.points[..count],
+            normals: &mut self.normals[..count],
+            names: &mut self.names[..count],
+            is_on_plane: &mut self.is_on_plane[..count],
+        }
+    }
+
+    /// All points as they are.
+    pub(super) fn all(
+        points: &[Point],
+        normals: &[Vector],
+        arena: &mut Arena<'s>,
+    ) -> Result<Self, OutOfMemory> {
+        let kept = Self::new(points.len(), arena)?;
+        kept.points.copy_from_slice(points);
+        kept.normals.copy_from_slice(normals);
+        for (name, index) in kept.names.iter_mut().zip(0..) {
+            *name = index;
+        }
+        Ok(kept)
+    }
+    /// The points that are not flagged.
+    pub(super) fn without(self, is_dropped: &[u8]) -> Self {
+        let mut count = 0;
+        for index in (0..is_dropped.len()).filter(|&index| is_dropped[index] == 0) {
+            self.points[count] = self.points[index];
+            self.normals[count] = self.normals[index];
+            self.names[count] = self.names[index];
+            self.is_on_plane[count] = self.is_on_plane[index];
+            count += 1;
+        }
+        self.first(count)
+    }
+}
+
+/// Groups the points by place, calls `visit` with the index of each point and of its group, writes the first point of each
+/// group to `firsts`, and returns the number of groups.
+fn group(
+    normals: &[Vector],
+    place: impl Fn(usize) -> [u32; 3],
+    table: &mut [u32],
+    firsts: &mut [u32],
+    mut visit: impl FnMut(usize, usize),
+) -> usize {
+    table.fill(0);
+    let (mask, mut count) = (table.len() - 1, 0_usize);
+    for (index, normal) in normals.iter().enumerate() {
+        let key = place(index);
+        let mut slot = hash(key) as usize & mask;
+        let group = loop {
+            let Some(group) = (table[slot] as usize).checked_sub(1) else {
+                count += 1;
+                table[slot] = count as u32;
+                firsts[count - 1] = index as u32;
+                break count - 1;
+            };
+            let first = firsts[group] as usize;
+            if place(first) == key && normals[first].dot(normal) >= 0.0 {
+                break group;
+            }
+            slot = (slot + 1) & mask;
+        };
+        visit(index, group);
+    }
+    count
+}
+
+/// The cube with an edge of `edge` metres that a point is in.
+fn cube(point: &Point, edge: f32) -> [u32; 3] {
+    [point.x, point.y, point.z].map(|x| libm::floorf(x / edge) as i32 as u32)
+}
+
+/// The very place of a point. Zero has two representations.
+fn bits(point: &Point) -> [u32; 3] {
+    [point.x, point.y, point.z].map(|x| (x + 0.0).to_bits())
+}
+
+fn hash([x, y, z]: [u32; 3]) -> u32 {
+    let mixed = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ z.wrapping_mul(0xC2B2_AE3D);
+    (mixed ^ mixed >> 15).wrapping_mul(0x2C1B_3C6D) ^ mixed >> 13
+}

@@ -1,0 +1,86 @@
+//! From the points that a camera or a file gives to those that are surface: duplicates are merged, strays dropped, and walls
+//! and tables told apart from what things hang on.
+
+mod merge;
+mod planes;
+pub(crate) mod spacing;
+mod strays;
+
+use crate::geometry::{Point, PointTreeSlots, Vector};
+use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
+use merge::Kept;
+
+/// Bytes of working memory for a cloud of `points`, some of which [`Cleaned`] keeps.
+pub(crate) const fn scratch_bytes(points: usize) -> usize {
+    let kept = merge::bytes(points)
+        .saturating_add(array_bytes::<f32>(points))
+        .saturating_add(array_bytes::<Vector>(points))
+        .saturating_add(array_bytes::<u8>(points));
+    kept.saturating_add(larger(merge::scratch_bytes(points), strays::scratch_bytes(points)))
+}
+
+/// A cloud without duplicates and strays, in the order of its tree.
+pub(crate) struct Cleaned<'s> {
+    /// Unit normals, zero where none was given.
+    pub(crate) normals: &'s mut [Vector],
+    /// Distance between points around each point, metres.
+    pub(crate) spacings: &'s [f32],
+    /// 1 for points on large planes, as walls and tables, on which nothing hangs.
+    pub(crate) is_on_plane: &'s [u8],
+    pub(crate) counts: CleaningCounts,
+}
+
+/// What was done to the points of a cloud.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CleaningCounts {
+    /// Points that were merged with others: at the same place or, in a cloud of more than two points a cubic millimetre,
+    /// in the same one.
+    pub merged: usize,
+    /// Points that were dropped as strays: alone in the air, or in a speck.
+    pub strays: usize,
+    /// Points left on large planes, as walls and tables: an object may collide with them, but not hang there.
+    pub on_planes: usize,
+}
+
+/// Merges and drops points, unless the cloud is to be taken as it is, and fills `slots` with those that are left, at least
+/// one, named by their indices in `points`. `normals` are of unit length, or zero where unknown.
+pub(crate) fn clean<'s>(
+    points: &[Point],
+    normals: &[Vector],
+    is_taken_as_it_is: bool,
+    slots: &mut PointTreeSlots,
+    arena: &mut Arena<'s>,
+) -> Result<Cleaned<'s>, OutOfMemory> {
+    let kept = match is_taken_as_it_is {
+        true => Kept::all(points, normals, arena)?,
+        false => merge::merge(points, normals, arena)?,
+    };
+    let mut counts = CleaningCounts { merged: points.len() - kept.points.len(), ..CleaningCounts::default() };
+    slots.fill(kept.points, arena.scratch())?;
+    let spacings = arena.slice::<f32>(kept.points.len())?;
+    spacing::measure(&slots.tree(), spacings);
+    let kept = if is_taken_as_it_is {
+        kept
+    } else {
+        let mut scratch = arena.scratch();
+        let is_stray = strays::find(&slots.tree(), spacings, &mut scratch)?;
+        counts.strays = is_stray.iter().filter(|flag| **flag > 0).count();
+        if counts.strays > 0 {
+            let kept = kept.without(is_stray);
+            slots.fill(kept.points, scratch)?;
+            spacing::measure(&slots.tree(), &mut spacings[..kept.points.len()]);
+            kept
+        } else {
+            kept
+        }
+    };
+    let count = kept.points.len();
+    let (normals, is_on_plane) = (arena.slice::<Vector>(count)?, arena.slice::<u8>(count)?);
+    for (place, &index) in slots.tree().order().iter().enumerate() {
+        normals[place] = kept.normals[index as usize];
+        is_on_plane[place] = kept.is_on_plane[index as usize];
+    }
+    counts.on_planes = is_on_plane.iter().filter(|flag| **flag > 0).count();
+    slots.rename(kept.names);
+    Ok(Cleaned { normals, spacings: &spacings[..count], is_on_plane, counts })
+}

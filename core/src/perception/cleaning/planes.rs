@@ -1,0 +1,157 @@
+//! Large planes, as walls and tables: things to collide with, not to hang on.
+
+use crate::geometry::{Point, Vector, any_perpendicular, least_eigenvector};
+use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::random::Random;
+use nalgebra::Matrix3;
+
+// Physics: what a large plane is.
+
+/// Edge of the smallest square that makes a plane large, in cells. With [`CELL`] it is 15 cm: wider than the boards and
+/// plates that hooks are mounted on are high, and than what objects are hung over.
+const SQUARE: usize = 6;
+/// Edge of a cell of the grid on a plane, metres. The points of a surface are closer.
+const CELL: f32 = 0.025;
+/// Least share of the cells of the square that have points.
+const MIN_FILL: f32 = 0.9;
+
+// Tolerances.
+
+/// Largest distance from a plane to its points, metres: three times the noise of a good depth camera at one metre.
+const TOLERANCE: f32 = 0.004;
+
+// Budget.
+
+/// Points among which planes are searched.
+const PROBES: usize = 2048;
+/// Triples of points that are tried for each plane. One in 27 lies on a plane that has a third of the points.
+const TRIALS: usize = 192;
+/// Largest number of planes.
+const MAX_PLANES: usize = 8;
+/// Least share of the probes on a plane that is looked at.
+const MIN_SHARE: f32 = 0.04;
+/// Cells of the grid along an edge: with [`CELL`], it spans 3.2 m.
+const CELLS: usize = 128;
+
+/// Bytes of working memory for a cloud of `points`.
+pub(super) const fn scratch_bytes(points: usize) -> usize {
+    let probes = if points < PROBES { points } else { PROBES };
+    array_bytes::<Point>(probes).saturating_add(array_bytes::<u8>(CELLS * CELLS))
+}
+
+/// A plane with a grid on it.
+struct Plane {
+    origin: Point,
+    normal: Vector,
+    axes: [Vector; 2],
+}
+
+/// Marks with 1 the points on large planes.
+pub(super) fn mark(points: &[Point], is_on_plane: &mut [u8], mut scratch: Arena) -> Result<(), OutOfMemory> {
+    let mut probes = scratch.slice::<Point>(points.len().min(PROBES))?;
+    let cells = scratch.slice::<u8>(CELLS * CELLS)?;
+    let count = probes.len();
+    for (k, probe) in probes.iter_mut().enumerate() {
+        *probe = points[k * points.len() / count];
+    }
+    let mut random = Random::new(0);
+    for _ in 0..MAX_PLANES {
+        let Some(plane) = Plane::search(probes, MIN_SHARE * count as f32, &mut random) else { break };
+        plane.fill(points, cells);
+        if mark_squares(cells) {
+            for (flag, point) in is_on_plane.iter_mut().zip(points) {
+                *flag |= u8::from(plane.cell(point).is_some_and(|cell| is_in_or_beside_square(cells, cell)));
+            }
+        }
+        // The next plane is searched among the other probes.
+        let mut left = 0;
+        for index in 0..probes.len() {
+            let probe = probes[index];
+            if !plane.is_near(&probe) {
+                probes[left] = probe;
+                left += 1;
+            }
+        }
+        probes = &mut probes[..left];
+    }
+    Ok(())
+}
+
+impl Plane {
+    /// The plane with the most points, if there are more than `least`.
+    fn search(points: &[Point], least: f32, random: &mut Random) -> Option<Self> {
+        let (mut best, mut most) = (None, least);
+        if points.len() < 3 {
+            return None;
+        }
+        for _ in 0..TRIALS {
+            let [a, b, c] = core::array::from_fn(|_| points[random.next_u32() as usize % points.len()]);
+            let Some(normal) = (b - a).cross(&(c - a)).try_normalize(1e-9) else { continue };
+            let count = points.iter().filter(|p| (*p - a).dot(&normal).abs() < TOLERANCE).count() as f32;
+            if count > most {
+                (best, most) = (Some((a, normal)), count);
+            }
+        }
+        let (mut origin, mut normal) = best?;
+        // Twice, because the better plane has other points.
+        for _ in 0..2 {
+            let on = || points.iter().filter(|p| (*p - origin).dot(&normal).abs() < TOLERANCE);
+            let count = on().count() as f32;
+            let mean = on().map(|p| p - origin).sum::<Vector>() / count;
+            let spread: Matrix3<f32> = on().map(|p| p - origin - mean).map(|o| o * o.transpose()).sum();
+            (origin, normal) = (origin + mean, least_eigenvector(spread));
+        }
+        let ahead = any_perpendicular(normal);
+        Some(Self { origin, normal, axes: [ahead, normal.cross(&ahead)] })
+    }
+
+    fn is_near(&self, point: &Point) -> bool {
+        (point - self.origin).dot(&self.normal).abs() < TOLERANCE
+    }
+
+    /// The cell of a point on the plane.
+    fn cell(&self, point: &Point) -> Option<usize> {
+        if !self.is_near(point) {
+            return None;
+        }
+        let [x, y] = self.axes.map(|axis| libm::floorf((point - self.origin).dot(&axis) / CELL));
+        let half = (CELLS / 2) as f32;
+        let is_inside = |x: f32| x >= -half && x < half;
+        (is_inside(x) && is_inside(y)).then(|| (y + half) as usize * CELLS + (x + half) as usize)
+    }
+
+    /// Marks the cells that have points.
+    fn fill(&self, points: &[Point], cells: &mut [u8]) {
+        cells.fill(0);
+        points.iter().filter_map(|point| self.cell(point)).for_each(|cell| cells[cell] = OCCUPIED);
+    }
+}
+
+/// Bit of a cell that has points.
+const OCCUPIED: u8 = 1;
+/// Bit of a cell with points in a filled square.
+const LARGE: u8 = 2;
+
+/// Whether a cell or one of those around it is in a filled square: at the rim of a plane a cell may be cut narrow, and
+/// those beside it empty.
+fn is_in_or_beside_square(cells: &[u8], cell: usize) -> bool {
+    let is_large =
+        |offset: usize| cells.get((cell + offset).wrapping_sub(CELLS + 1)).is_some_and(|c| c & LARGE > 0);
+    (0..9).any(|k| is_large(k / 3 * CELLS + k % 3))
+}
+
+/// Marks the cells with points in squares that are filled. Returns whether there is one.
+fn mark_squares(cells: &mut [u8]) -> bool {
+    let (mut is_any_filled, least) = (false, MIN_FILL * (SQUARE * SQUARE) as f32);
+    for y in 0..=CELLS - SQUARE {
+        for x in 0..=CELLS - SQUARE {
+            let square = || (0..SQUARE * SQUARE).map(|k| (y + k / SQUARE) * CELLS + x + k % SQUARE);
+            let occupied = square().filter(|&cell| cells[cell] & OCCUPIED > 0).count() as f32;
+            if occupied >= least {
+                square().for_each(|cell| cells[cell] |= LARGE);
+                is_any_filled = true;
+            }
+        }
+    }
+    is_any_filled
+}

@@ -1,0 +1,159 @@
+//! Points in the air: single ones, as flying pixels and reflections make them, and specks of a few.
+
+use crate::geometry::{Neighbour, PointTree, Vector, least_eigenvector};
+use crate::memory::{Arena, OutOfMemory, array_bytes};
+use nalgebra::Matrix3;
+
+// Tolerances, set by hand on the clouds of the tests below.
+
+/// Factor on the spacing of the points around, and on that of the whole cloud, beyond which a point stands apart. Points
+/// sampled at random from a surface reach 3.4.
+const APART: f32 = 4.0;
+/// Factor on a point's spacing within which others that stand as far apart make a surface with it. A sparse wall behind
+/// a dense hook stands apart from the hook, but its points lie in a plane.
+const PEER_RADIUS: f32 = 2.5;
+/// Least number of points, itself included, that make a surface.
+const MIN_PEERS: usize = 6;
+/// Largest thickness of such a surface, as a share of its extent.
+const MAX_THICKNESS: f32 = 0.15;
+/// Largest spacing of the points of a surface, metres: an object passes between points that are farther apart.
+const MAX_SPACING: f32 = 0.05;
+/// Factor on the smaller of two spacings within which points are in one piece.
+const LINK: f32 = 2.0;
+/// Largest number of points of a speck.
+const MAX_SPECK: u32 = 8;
+
+/// Neighbours by which a point is judged and linked, itself included.
+const NEIGHBOURS: usize = 9;
+/// Peers that are looked at.
+const MAX_PEERS: usize = 24;
+
+/// Bytes of working memory for a cloud of `points`.
+pub(super) const fn scratch_bytes(points: usize) -> usize {
+    array_bytes::<u8>(points).saturating_add(array_bytes::<u32>(points).saturating_mul(2))
+}
+
+/// Flags the strays, in the order of the points that the tree was built from. `spacings` are in tree order. At least one
+/// point is not flagged.
+pub(super) fn find<'s>(
+    tree: &PointTree,
+    spacings: &[f32],
+    arena: &mut Arena<'s>,
+) -> Result<&'s [u8], OutOfMemory> {
+    let count = tree.points().len();
+    let is_stray = arena.slice::<u8>(count)?;
+    let parents = arena.slice::<u32>(count)?;
+    let sizes = arena.slice::<u32>(count)?;
+    let overall = median(spacings, sizes);
+    for index in 0..count {
+        let is_apart = is_apart(tree, spacings, index, overall);
+        is_stray[tree.order()[index] as usize] = u8::from(is_apart);
+    }
+    drop_specks(tree, spacings, is_stray, parents, sizes);
+    if is_stray.iter().all(|flag| *flag > 0) {
+        is_stray.fill(0);
+    }
+    Ok(is_stray)
+}
+
+/// The median of positive values. `bits` is working memory.
+fn median(values: &[f32], bits: &mut [u32]) -> f32 {
+    // Positive floats are ordered like their bits.
+    for (bits, value) in bits.iter_mut().zip(values) {
+        *bits = value.to_bits();
+    }
+    let middle = bits.len() / 2;
+    f32::from_bits(*bits.select_nth_unstable(middle).1)
+}
+
+/// Whether a point stands alone.
+fn is_apart(tree: &PointTree, spacings: &[f32], index: usize, overall: f32) -> bool {
+    let spacing = spacings[index];
+    if spacing > APART * overall {
+        return !has_peers(tree, spacings, index);
+    }
+    let mut found = [Neighbour::default(); NEIGHBOURS];
+    let neighbours = tree.k_nearest(&tree.points()[index], &mut found);
+    let mut sorted = heapless::Vec::<f32, NEIGHBOURS>::new();
+    for neighbour in neighbours.iter().filter(|n| n.index as usize != index) {
+        let _ = sorted.push(spacings[neighbour.index as usize]);
+    }
+    sorted.sort_unstable_by(f32::total_cmp);
+    let local = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    spacing > APART * local && !has_peers(tree, spacings, index)
+}
+
+/// Whether a point is part of a plane of points that stand as far apart as it does.
+fn has_peers(tree: &PointTree, spacings: &[f32], index: usize) -> bool {
+    let (point, spacing) = (&tree.points()[index], spacings[index]);
+    if spacing > MAX_SPACING {
+        return false;
+    }
+    let mut peers = heapless::Vec::<Vector, MAX_PEERS>::new();
+    tree.for_each_within(point, PEER_RADIUS * spacing, |neighbour| {
+        let other = neighbour.index as usize;
+        if spacings[other] > 0.5 * spacing {
+            let _ = peers.push((tree.points()[other] - point) / spacing);
+        }
+    });
+    peers.len() >= MIN_PEERS && is_flat(&peers)
+}
+
+/// Whether points lie in a plane or on a line.
+fn is_flat(offsets: &[Vector]) -> bool {
+    let mean = offsets.iter().sum::<Vector>() / offsets.len() as f32;
+    let spread: Matrix3<f32> = offsets.iter().map(|o| (o - mean) * (o - mean).transpose()).sum();
+    let normal = least_eigenvector(spread);
+    let thickness = normal.dot(&(spread * normal)).max(0.0);
+    thickness <= MAX_THICKNESS * MAX_THICKNESS * spread.trace()
+}
+
+/// Flags the points of pieces of at most [`MAX_SPECK`] points. `parents` and `sizes` are working memory.
+fn drop_specks(
+    tree: &PointTree,
+    spacings: &[f32],
+    is_stray: &mut [u8],
+    parents: &mut [u32],
+    sizes: &mut [u32],
+) {
+    for (parent, index) in parents.iter_mut().zip(0..) {
+        *parent = index;
+    }
+    for (index, point) in tree.points().iter().enumerate() {
+        let mut found = [Neighbour::default(); NEIGHBOURS];
+        for neighbour in tree.k_nearest(point, &mut found) {
+            let other = neighbour.index as usize;
+            let reach = LINK * spacings[index].min(spacings[other]);
+            if neighbour.distance_squared <= reach * reach {
+                join(parents, index as u32, other as u32);
+            }
+        }
+    }
+    sizes.fill(0);
+    for index in 0..parents.len() {
+        sizes[root(parents, index as u32) as usize] += 1;
+    }
+    let largest = sizes.iter().copied().max().unwrap_or(0);
+    for index in 0..parents.len() {
+        let size = sizes[root(parents, index as u32) as usize];
+        if size <= MAX_SPECK && size < largest {
+            is_stray[tree.order()[index] as usize] = 1;
+        }
+    }
+}
+
+/// The first point of the piece that a point is in. Halves the paths on the way.
+fn root(parents: &mut [u32], mut index: u32) -> u32 {
+    while parents[index as usize] != index {
+        let parent = parents[index as usize];
+        parents[index as usize] = parents[parent as usize];
+        index = parent;
+    }
+    index
+}
+
+/// Makes one piece of the pieces of two points.
+fn join(parents: &mut [u32], a: u32, b: u32) {
+    let (a, b) = (root(parents, a), root(parents, b));
+    parents[a.max(b) as usize] = a.min(b);
+}
