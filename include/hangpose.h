@@ -55,8 +55,8 @@
 #define HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE 180
 #define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 312
 #define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 19
-#define HANGPOSE_SUPPORTER_BYTES_AT_LEAST 17408
-#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 243
+#define HANGPOSE_SUPPORTER_BYTES_AT_LEAST 58368
+#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 314
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 43008
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 9
 #define HANGPOSE_PREDICT_BYTES_EACH_POSE 384
@@ -239,16 +239,26 @@ typedef struct hangpose_cloud {
   uint32_t struct_size;
   // Number of points.
   uint32_t point_count;
+  // Number of viewpoints; 0 if none is known.
+  uint32_t viewpoint_count;
   // Array of point_count rows of x, y, z: metres, in supporter coordinates, each within +-1,000,000.
   const float *points;
-  // Array of point_count rows of x, y, z: normals that point out of the solid, of any length. Normals that
-  // point into the solid, or whose signs disagree with each other, are reversed. A row of zeros marks an unknown normal. May be null: no normal is known. Unknown normals are estimated; they follow the
-  // known normals around them.
+  // Array of point_count rows of x, y, z: normals that point out of the solid, of any length. Normals that point
+  // into the solid, or whose signs disagree with each other, are reversed. A row of zeros marks an unknown
+  // normal. May be null: no normal is known. Unknown normals are estimated; they follow the known normals
+  // around them.
   const float *normals;
-  // x, y, z of the sensor position, metres, in supporter coordinates: if no normal is known, the estimated
-  // normals face it. May be null: they are then oriented from point to point, and the pieces of the
-  // cloud vote on their outside with the surfaces opposite to them.
-  const float *viewpoint;
+  // Array of viewpoint_count rows of x, y, z: positions of the sensor from which the points were seen, metres, in
+  // supporter coordinates. If no normal is known, the estimated normals face them. May be null if
+  // viewpoint_count is 0: the normals are then oriented from point to point, and the pieces of the cloud vote on
+  // their outside with the surfaces opposite to them.
+  const float *viewpoints;
+  // Array of point_count marks: 0 for points on which nothing shall hang, which are obstacles. May be null: an
+  // object may hang on any point.
+  const uint8_t *marks;
+  // Two rows of x, y, z: lower and upper corner of the box within which objects may hang, metres, in supporter
+  // coordinates. Points outside are obstacles. May be null: an object may hang anywhere.
+  const float *region;
 } hangpose_cloud;
 
 // The largest inputs for which memory is reserved. Smaller inputs need no more memory.
@@ -367,12 +377,21 @@ typedef struct hangpose_supporter_info {
   uint32_t struct_size;
   // HANGPOSE_WORK_LIMIT if the search for sites or contact candidates ended early, else HANGPOSE_OK.
   hangpose_status stopped;
-  // Number of points of the cloud.
+  // Number of points that are left of the cloud: without those that were merged and the strays.
   uint32_t points;
+  // Number of points that were merged with others at the same place.
+  uint32_t points_merged;
+  // Number of points that were dropped as strays: alone in the air, or in a speck.
+  uint32_t strays;
+  // Number of points left on large planes, as walls and tables, on which nothing hangs.
+  uint32_t points_on_planes;
   // Number of normals that were missing or zero and were estimated from the neighbouring points.
   uint32_t normals_estimated;
   // Number of normals that were not of unit length and were normalised.
   uint32_t normals_renormalised;
+  // Number of given normals that were reversed, because they pointed into the solid or because their signs did not
+  // agree with each other.
+  uint32_t normals_reversed;
   // Number of points that face up, eq. (2): with a cosine above supporter_contact_cosine, or 0.3 with
   // HANGPOSE_CANDIDATES_CONTACTS.
   uint32_t contact_points;

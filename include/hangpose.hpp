@@ -140,27 +140,47 @@ struct mesh : hangpose_mesh {
   }
 };
 
-// A point cloud in the caller's arrays, which must outlive it: points, one normal for each point or none, and
-// the sensor position or null.
+// A point cloud in the caller's arrays, which must outlive it: points, and one normal for each point or none.
 struct cloud : hangpose_cloud {
-  cloud(view<const vec3> point_rows, view<const vec3> normal_rows = {},
-        const vec3 *seen_from = nullptr) noexcept
+  cloud(view<const vec3> point_rows, view<const vec3> normal_rows = {}) noexcept
       : hangpose_cloud(), normal_count(internal::count(normal_rows.size())) {
     struct_size = sizeof(hangpose_cloud);
     point_count = internal::count(point_rows.size());
     points = internal::numbers(point_rows);
     normals = internal::numbers(normal_rows);
-    viewpoint = seen_from == nullptr ? nullptr : seen_from->data();
   }
-  // Checks the number of normals, which the C interface cannot see.
+  // Sets the positions of the sensor, metres. Estimated normals face them.
+  cloud &seen_from(view<const vec3> positions) noexcept {
+    viewpoint_count = internal::count(positions.size());
+    viewpoints = internal::numbers(positions);
+    return *this;
+  }
+  // Limits the places to hang on to points whose mark is not 0.
+  cloud &hang_on(view<const unsigned char> point_marks) noexcept {
+    mark_count = internal::count(point_marks.size());
+    marks = point_marks.data();
+    return *this;
+  }
+  // Limits the places to hang on to a box: its lower and its upper corner, metres.
+  cloud &hang_within(const std::array<vec3, 2> &corners) noexcept {
+    region = corners[0].data();
+    return *this;
+  }
+  // Checks the numbers of normals and marks, which the C interface cannot see.
   result<done> check() const noexcept {
-    if (normal_count == 0 || normal_count == point_count) return done{};
-    return error::of(
-        HANGPOSE_ERROR_COUNT, "cloud.normals",
-        "the number of normals differs from the number of points: pass one normal for each point, or none");
+    if (normal_count != 0 && normal_count != point_count)
+      return error::of(HANGPOSE_ERROR_COUNT, "cloud.normals",
+                       "the number of normals differs from the number of points: pass one normal for each "
+                       "point, or none");
+    if (marks != nullptr && mark_count != point_count)
+      return error::of(HANGPOSE_ERROR_COUNT, "cloud.marks",
+                       "the number of marks differs from the number of points: pass one mark for each point, "
+                       "or none");
+    return done{};
   }
 
   std::uint32_t normal_count;
+  std::uint32_t mark_count = 0;
 };
 
 // An analysed object. Any number of threads may use it at the same time.

@@ -8,7 +8,7 @@ use hangpose_ffi::*;
 use std::hint::black_box;
 use std::path::Path;
 use std::process::ExitCode;
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 use std::time::Instant;
 
 const ROUNDS: usize = 60;
@@ -75,7 +75,10 @@ impl C {
             point_count: cloud.points.len() as u32,
             points: cloud.points.as_ptr().cast(),
             normals: normals.as_ptr().cast(),
-            viewpoint: null_mut(),
+            viewpoint_count: 0,
+            viewpoints: null(),
+            marks: null(),
+            region: null(),
         };
         // SAFETY: all fields are numbers, and the calls below set them.
         let mut params: hangpose_params = unsafe { std::mem::zeroed() };

@@ -110,6 +110,22 @@ pub(crate) unsafe fn rows<'a, T>(
     Ok(unsafe { core::slice::from_raw_parts(pointer.cast(), count as usize) })
 }
 
+/// `count` bytes.
+///
+/// # Safety
+///
+/// The obligations of the caller at the top of this file.
+pub(crate) unsafe fn bytes<'a>(
+    argument: &'static str,
+    pointer: *const u8,
+    count: u32,
+) -> Result<&'a [u8], Failure> {
+    check(argument, pointer)?;
+    check_count::<u8>(argument, count)?;
+    // SAFETY: not null, and short enough for a slice. The caller vouches for the rest.
+    Ok(unsafe { core::slice::from_raw_parts(pointer, count as usize) })
+}
+
 /// `count` rows of three numbers for the call to write.
 ///
 /// # Safety

@@ -1,4 +1,4 @@
-use crate::border::{Public, Region, rows};
+use crate::border::{Public, Region, bytes, rows};
 use crate::failure::Failure;
 use hangpose_core::geometry::{Cloud, CloudError, MAX_COUNT};
 
@@ -10,16 +10,26 @@ pub struct hangpose_cloud {
     pub struct_size: u32,
     /// Number of points.
     pub point_count: u32,
+    /// Number of viewpoints; 0 if none is known.
+    pub viewpoint_count: u32,
     /// Array of point_count rows of x, y, z: metres, in supporter coordinates, each within +-1,000,000.
     pub points: *const f32,
-    /// Array of point_count rows of x, y, z: normals that point out of the solid, of any length. Normals that
-    /// point into the solid, or whose signs disagree with each other, are reversed. A row of zeros marks an unknown normal. May be null: no normal is known. Unknown normals are estimated; they follow the
-    /// known normals around them.
+    /// Array of point_count rows of x, y, z: normals that point out of the solid, of any length. Normals that point
+    /// into the solid, or whose signs disagree with each other, are reversed. A row of zeros marks an unknown
+    /// normal. May be null: no normal is known. Unknown normals are estimated; they follow the known normals
+    /// around them.
     pub normals: *const f32,
-    /// x, y, z of the sensor position, metres, in supporter coordinates: if no normal is known, the estimated
-    /// normals face it. May be null: they are then oriented from point to point, and the pieces of the
-    /// cloud vote on their outside with the surfaces opposite to them.
-    pub viewpoint: *const f32,
+    /// Array of viewpoint_count rows of x, y, z: positions of the sensor from which the points were seen, metres, in
+    /// supporter coordinates. If no normal is known, the estimated normals face them. May be null if
+    /// viewpoint_count is 0: the normals are then oriented from point to point, and the pieces of the cloud vote on
+    /// their outside with the surfaces opposite to them.
+    pub viewpoints: *const f32,
+    /// Array of point_count marks: 0 for points on which nothing shall hang, which are obstacles. May be null: an
+    /// object may hang on any point.
+    pub marks: *const u8,
+    /// Two rows of x, y, z: lower and upper corner of the box within which objects may hang, metres, in supporter
+    /// coordinates. Points outside are obstacles. May be null: an object may hang anywhere.
+    pub region: *const f32,
 }
 
 // SAFETY: `repr(C)` over numbers and pointers, `struct_size` first.
@@ -42,13 +52,19 @@ impl hangpose_cloud {
             // SAFETY: those of this function.
             false => Some(unsafe { rows("cloud.normals", self.normals, self.point_count) }?),
         };
-        let cloud = Cloud::new(points, normals)?;
-        if self.viewpoint.is_null() {
-            return Ok(cloud);
-        }
         // SAFETY: those of this function.
-        let viewpoint = unsafe { rows("cloud.viewpoint", self.viewpoint, 1) }?;
-        Ok(cloud.seen_from(viewpoint[0])?)
+        let viewpoints = unsafe { rows("cloud.viewpoints", self.viewpoints, self.viewpoint_count) }?;
+        let mut cloud = Cloud::new(points, normals)?.seen_from(viewpoints)?;
+        if !self.marks.is_null() {
+            // SAFETY: those of this function.
+            cloud = cloud.hang_on(unsafe { bytes("cloud.marks", self.marks, self.point_count) }?)?;
+        }
+        if !self.region.is_null() {
+            // SAFETY: those of this function.
+            let corners = unsafe { rows("cloud.region", self.region, 2) }?;
+            cloud = cloud.hang_within(corners[0], corners[1])?;
+        }
+        Ok(cloud)
     }
 
     /// Checks the count before the arrays are read.
@@ -62,13 +78,15 @@ impl hangpose_cloud {
         }
     }
 
-    pub(crate) fn regions(&self) -> [Region; 4] {
+    pub(crate) fn regions(&self) -> [Region; 6] {
         let rows = |name, pointer: *const f32, count| Region::read(name, pointer.cast::<[f32; 3]>(), count);
         [
             Region::read("cloud", self, 1),
             rows("cloud.points", self.points, self.point_count as usize),
             rows("cloud.normals", self.normals, self.point_count as usize),
-            rows("cloud.viewpoint", self.viewpoint, 1),
+            rows("cloud.viewpoints", self.viewpoints, self.viewpoint_count as usize),
+            Region::read("cloud.marks", self.marks, self.point_count as usize),
+            rows("cloud.region", self.region, 2),
         ]
     }
 }

@@ -56,14 +56,20 @@ impl Failure {
             Self::Empty { .. } => HANGPOSE_ERROR_EMPTY,
             Self::Count { .. }
             | Self::Mesh(MeshError::Empty | MeshError::TooLarge { .. })
-            | Self::Cloud(CloudError::Empty | CloudError::TooLarge { .. } | CloudError::NormalCount { .. }) => {
-                HANGPOSE_ERROR_COUNT
-            }
+            | Self::Cloud(
+                CloudError::Empty
+                | CloudError::TooLarge { .. }
+                | CloudError::NormalCount { .. }
+                | CloudError::MarkCount { .. },
+            ) => HANGPOSE_ERROR_COUNT,
             Self::Choice { .. }
             | Self::Params(_)
             | Self::Mesh(MeshError::Coordinate { .. })
             | Self::Cloud(
-                CloudError::Coordinate { .. } | CloudError::Normal { .. } | CloudError::Viewpoint { .. },
+                CloudError::Coordinate { .. }
+                | CloudError::Normal { .. }
+                | CloudError::Viewpoint { .. }
+                | CloudError::Region { .. },
             ) => HANGPOSE_ERROR_VALUE,
             Self::Index { .. } | Self::Mesh(MeshError::Index { .. }) => HANGPOSE_ERROR_INDEX,
             Self::Mesh(MeshError::AllDegenerate { .. }) => HANGPOSE_ERROR_DEGENERATE,
@@ -161,7 +167,19 @@ fn cloud_place(error: CloudError) -> Place {
         CloudError::NormalCount { points, normals } => {
             Place::of("cloud.normals").value(normals as f64).range([points as f64; 2])
         }
-        CloudError::Viewpoint { position } => Place::of("cloud.viewpoint").coordinate(None, position),
+        CloudError::Viewpoint { viewpoint, position } => {
+            Place::of("cloud.viewpoints").coordinate(Some(viewpoint), position)
+        }
+        CloudError::MarkCount { points, marks } => {
+            Place::of("cloud.marks").value(marks as f64).range([points as f64; 2])
+        }
+        CloudError::Region { low, high } => {
+            let bad = (0..3).find(|&i| !(low[i].is_finite() && high[i].is_finite() && low[i] <= high[i]));
+            let place = Place::of("cloud.region");
+            bad.map_or(place, |i| {
+                place.value(f64::from(low[i])).range([f64::NEG_INFINITY, f64::from(high[i])])
+            })
+        }
     }
 }
 

@@ -53,7 +53,7 @@ pub unsafe extern "C" fn hangpose_supporter_create(
         let memory = memory.cast::<u8>();
         // SAFETY: the caller vouches for the pointer.
         let cloud = unsafe { input(cloud) }?;
-        let [cloud_region, points, normals, viewpoint] = cloud.regions();
+        let [cloud_region, points, normals, viewpoints, marks, region] = cloud.regions();
         keep_apart(&[
             Region::written(DETAIL, detail, 1),
             Region::written("memory", memory, memory_size),
@@ -63,7 +63,9 @@ pub unsafe extern "C" fn hangpose_supporter_create(
             cloud_region,
             points,
             normals,
-            viewpoint,
+            viewpoints,
+            marks,
+            region,
         ])?;
         // SAFETY: the caller vouches for the pointers, and what is written is apart from the rest.
         let (supporter, params, monitor) =
@@ -106,7 +108,7 @@ pub unsafe extern "C" fn hangpose_supporter_update(
             unsafe { (input(cloud)?, input(params)?.to_core()?, monitor::of(monitor)?) };
         cloud.check_count()?;
         let check = |room, [handle, arena]: [Region; 2]| {
-            let [cloud_region, points, normals, viewpoint] = cloud.regions();
+            let [cloud_region, points, normals, viewpoints, marks, region] = cloud.regions();
             keep_apart(&[
                 Region::written(DETAIL, detail, 1),
                 handle,
@@ -116,7 +118,9 @@ pub unsafe extern "C" fn hangpose_supporter_update(
                 cloud_region,
                 points,
                 normals,
-                viewpoint,
+                viewpoints,
+                marks,
+                region,
             ])?;
             let needed = model_bytes(cloud);
             if needed > room {
@@ -152,12 +156,21 @@ pub struct hangpose_supporter_info {
     pub struct_size: u32,
     /// HANGPOSE_WORK_LIMIT if the search for sites or contact candidates ended early, else HANGPOSE_OK.
     pub stopped: hangpose_status,
-    /// Number of points of the cloud.
+    /// Number of points that are left of the cloud: without those that were merged and the strays.
     pub points: u32,
+    /// Number of points that were merged with others at the same place.
+    pub points_merged: u32,
+    /// Number of points that were dropped as strays: alone in the air, or in a speck.
+    pub strays: u32,
+    /// Number of points left on large planes, as walls and tables, on which nothing hangs.
+    pub points_on_planes: u32,
     /// Number of normals that were missing or zero and were estimated from the neighbouring points.
     pub normals_estimated: u32,
     /// Number of normals that were not of unit length and were normalised.
     pub normals_renormalised: u32,
+    /// Number of given normals that were reversed, because they pointed into the solid or because their signs did not
+    /// agree with each other.
+    pub normals_reversed: u32,
     /// Number of points that face up, eq. (2): with a cosine above supporter_contact_cosine, or 0.3 with
     /// HANGPOSE_CANDIDATES_CONTACTS.
     pub contact_points: u32,
@@ -188,7 +201,7 @@ pub unsafe extern "C" fn hangpose_supporter_get_info(
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
     let read = |supporter: &Supporter| {
-        let (normals, work) = (supporter.normals(), supporter.work());
+        let (cleaning, normals, work) = (supporter.cleaning(), supporter.normals(), supporter.work());
         let (contact_points, counts) = match *supporter.places() {
             SupporterPlaces::Sites { counts, .. } => (counts.contact_points, counts),
             SupporterPlaces::Contacts { counts, .. } => (counts.contact_points, SupporterCounts::default()),
@@ -197,8 +210,12 @@ pub unsafe extern "C" fn hangpose_supporter_get_info(
             struct_size: size_of::<hangpose_supporter_info>() as u32,
             stopped: stopped(supporter.stopped()),
             points: supporter.points().points().len() as u32,
+            points_merged: cleaning.merged as u32,
+            strays: cleaning.strays as u32,
+            points_on_planes: cleaning.on_planes as u32,
             normals_estimated: normals.estimated as u32,
             normals_renormalised: normals.renormalised as u32,
+            normals_reversed: normals.reversed as u32,
             contact_points: contact_points as u32,
             clusters: counts.clusters as u32,
             sites: counts.sites as u32,

@@ -27,7 +27,7 @@ fn clouds() -> Vec<(String, CloudFile)> {
             winding.number(&out.cast::<f64>()) < 0.5
         };
         let (points, normals) = cloud.points.into_iter().zip(normals).filter(is_seen).unzip();
-        CloudFile { points, normals: Some(normals), notes: Vec::new() }
+        CloudFile { points, normals: Some(normals), ..CloudFile::default() }
     };
     let cloud = |seed| {
         move |kind: &SupporterKind| (format!("{} {seed}", kind.name), seen(&kind.make(seed).solid, seed))
@@ -54,7 +54,7 @@ fn analyse(cloud: &CloudFile, truth: &CloudFile) -> (NormalCounts, usize, usize)
 
 /// The same cloud with other normals.
 fn with_normals(cloud: &CloudFile, normals: Option<Vec<[f32; 3]>>) -> CloudFile {
-    CloudFile { points: cloud.points.clone(), normals, notes: Vec::new() }
+    CloudFile { points: cloud.points.clone(), normals, ..CloudFile::default() }
 }
 
 #[test]

@@ -66,7 +66,7 @@ impl MeshFile {
 impl CloudFile {
     /// The cloud as the core takes it.
     pub fn cloud(&self) -> Result<Cloud<'_>, CloudError> {
-        Cloud::new(&self.points, self.normals.as_deref())
+        Cloud::new(&self.points, self.normals.as_deref())?.seen_from(&self.viewpoints)
     }
 }
 
@@ -110,5 +110,5 @@ pub fn sample_supporter(mesh: &Mesh, count: usize, seed: u64) -> CloudFile {
     let mut memory = vec![0; sampling::sample_bytes(count)];
     sampling::sample(mesh, seed, &mut points, &mut normals, &mut memory)
         .expect("the memory has the size that sample_bytes returns");
-    CloudFile { points, normals: Some(normals), notes: Vec::new() }
+    CloudFile { points, normals: Some(normals), ..CloudFile::default() }
 }

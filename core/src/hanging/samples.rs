@@ -21,7 +21,8 @@ pub(super) struct SupporterCloud<'a> {
     pub(super) points: &'a [Point],
     /// Unit vectors out of the solid, in tree order.
     pub(super) normals: &'a [Vector],
-    /// 1 for points on walls and tables, on which nothing hangs, in tree order.
-    pub(super) is_on_plane: &'a [u8],
+    /// 1 for points on which nothing shall hang: those on walls and tables, and those that the caller excludes. In tree
+    /// order.
+    pub(super) is_excluded: &'a [u8],
     pub(super) params: &'a Params,
 }

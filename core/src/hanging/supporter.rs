@@ -74,21 +74,24 @@ impl<'m> Supporter<'m> {
         let slots = SupporterSlots::new(params, &mut arena)?;
         let mut scratch = arena.scratch();
         let given = scratch.slice::<Vector>(points.len())?;
-        let mut normals =
-            NormalCounts { renormalised: read_normals(cloud, given), ..NormalCounts::default() };
-        let Cleaned { normals: in_tree_order, spacings, is_on_plane, counts: cleaning } =
+        let renormalised = read_normals(cloud, given);
+        let estimated = given.iter().filter(|normal| **normal == Vector::zeros()).count();
+        let Cleaned { normals: in_tree_order, spacings, is_on_plane: is_excluded, counts: cleaning } =
             cleaning::clean(points, given, method::takes_cloud_as_it_is(params), &mut tree, &mut scratch)?;
         let tree = tree.into_tree();
-        let viewpoint = cloud.viewpoint();
-        let completed = normals::complete(&tree, in_tree_order, viewpoint, params.up(), scratch.scratch())?;
-        (normals.estimated, normals.reversed) = (completed.estimated, completed.reversed);
+        for (flag, &point) in is_excluded.iter_mut().zip(tree.order()) {
+            *flag |= u8::from(!cloud.may_hang_on(point as usize));
+        }
+        let viewpoints = cloud.viewpoints();
+        let reversed = normals::complete(&tree, in_tree_order, viewpoints, params.up(), scratch.scratch())?;
+        let normals = NormalCounts { estimated, renormalised, reversed };
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
 
         let support = match params.uses_mechanics() {
             true => Support::fit(tree, in_tree_order, spacings, room, scratch.scratch())?,
             false => Support::bare(tree),
         };
-        let seen = SupporterCloud { tree: &tree, points, normals: in_tree_order, is_on_plane, params };
+        let seen = SupporterCloud { tree: &tree, points, normals: in_tree_order, is_excluded, params };
         let (places, stopped) = slots.find(&seen, &mut meter, scratch)?;
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);

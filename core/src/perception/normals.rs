@@ -14,62 +14,51 @@ pub(crate) const fn scratch_bytes(points: usize) -> usize {
     array_bytes::<u32>(points).saturating_add(orientation::scratch_bytes(points))
 }
 
-/// What had to be done to the normals.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Completed {
-    /// Normals that were missing and were estimated.
-    pub(crate) estimated: usize,
-    /// Given normals that were reversed: all of them, because they pointed into the solid, or those whose sign did not
-    /// agree with the others.
-    pub(crate) reversed: usize,
-}
-
 /// Fills in the normals, in tree order, that are zero, and reverses given ones that point into the solid or at random.
+/// Returns how many were reversed.
 ///
 /// Where some normals are known, the others take the side of the known ones around them. Where none is, or the known
-/// ones have no consistent side, they face the `viewpoint` if there is one, and otherwise the outside that
-/// [`orientation::orient`] finds.
+/// ones have no consistent side, they face the viewpoint if there is one, and otherwise the outside that
+/// [`orientation::orient`] finds, from several viewpoints or none.
 pub(crate) fn complete(
     tree: &PointTree,
     normals: &mut [Vector],
-    viewpoint: Option<Point>,
+    viewpoints: &[Point],
     up: Vector,
     mut scratch: Arena,
-) -> Result<Completed, OutOfMemory> {
+) -> Result<usize, OutOfMemory> {
     let missing = normals.iter().filter(|n| **n == Vector::zeros()).count();
-    let mut completed = Completed { estimated: missing, reversed: 0 };
-    let orient = |normals: &mut [Vector], scratch| match viewpoint {
-        Some(viewpoint) => {
+    let orient = |normals: &mut [Vector], scratch| match viewpoints {
+        [viewpoint] => {
             face(tree, normals, viewpoint);
             Ok(())
         }
-        None => orientation::orient(tree, normals, up, scratch),
+        _ => orientation::orient(tree, normals, viewpoints, up, scratch),
     };
     if missing == normals.len() {
         for (normal, point) in normals.iter_mut().zip(tree.points()) {
             *normal = fit(tree, point);
         }
         orient(normals, scratch)?;
-        return Ok(completed);
+        return Ok(0);
     }
     if missing > 0 {
         follow_neighbours(tree, normals, up, scratch.scratch())?;
     }
     match orientation::judge(tree, normals) {
-        Given::Outwards => {}
+        Given::Outwards => Ok(0),
         Given::Inwards => {
             normals.iter_mut().for_each(|normal| *normal = -*normal);
-            completed.reversed = normals.len();
+            Ok(normals.len())
         }
         Given::Unoriented => {
             let first = |normal: &Vector| u32::from(leading_sign(normal));
             let before = scratch.slice::<u32>(normals.len())?;
             before.iter_mut().zip(normals.iter()).for_each(|(before, normal)| *before = first(normal));
             orient(normals, scratch)?;
-            completed.reversed = before.iter().zip(normals.iter()).filter(|(b, n)| **b != first(n)).count();
+            Ok(before.iter().zip(normals.iter()).filter(|(b, n)| **b != first(n)).count())
         }
     }
-    Ok(completed)
 }
 
 /// The sign of the first component that is not zero, true if positive.
@@ -90,7 +79,7 @@ fn fit(tree: &PointTree, point: &Point) -> Vector {
     least_eigenvector(covariance)
 }
 
-fn face(tree: &PointTree, normals: &mut [Vector], viewpoint: Point) {
+fn face(tree: &PointTree, normals: &mut [Vector], viewpoint: &Point) {
     for (normal, point) in normals.iter_mut().zip(tree.points()) {
         if normal.dot(&(viewpoint - point)) < 0.0 {
             *normal = -*normal;
@@ -136,8 +125,8 @@ mod tests {
     /// Calls `check` with samples of a tilted torus, their true normals, and what `complete` makes of `known`.
     fn with_completed(
         known: impl Fn(usize, Vector) -> Vector,
-        viewpoint: Option<Point>,
-        check: impl Fn(&[Point], &[Vector], &[Vector], Completed),
+        viewpoints: &[Point],
+        check: impl Fn(&[Point], &[Vector], &[Vector], usize),
     ) {
         let turn = nalgebra::Rotation3::from_euler_angles(0.4, 0.2, 0.0);
         let shape = test_shapes::torus(0.04, 0.012, 64, 32).map(|p| turn * p);
@@ -154,17 +143,17 @@ mod tests {
         let truth: Vec<Vector> = tree.order().iter().map(|&i| truth[i as usize].into()).collect();
         let mut normals: Vec<Vector> =
             truth.iter().enumerate().map(|(i, &normal)| known(i, normal)).collect();
-        let completed = complete(&tree, &mut normals, viewpoint, Vector::z(), arena.scratch()).unwrap();
-        check(tree.points(), &truth, &normals, completed);
+        let reversed = complete(&tree, &mut normals, viewpoints, Vector::z(), arena.scratch()).unwrap();
+        check(tree.points(), &truth, &normals, reversed);
     }
 
     #[test]
     fn propagated_over_a_torus_all_face_out() {
         with_completed(
             |_, _| Vector::zeros(),
-            None,
-            |_, truth, normals, completed| {
-                assert_eq!(completed, Completed { estimated: 3000, reversed: 0 });
+            &[],
+            |_, truth, normals, reversed| {
+                assert_eq!(reversed, 0);
                 assert!(truth.iter().zip(normals).all(|(t, n)| t.dot(n) > 0.95));
             },
         );
@@ -175,7 +164,7 @@ mod tests {
         let eye = Point::new(0.0, 0.0, 1.0);
         with_completed(
             |_, _| Vector::zeros(),
-            Some(eye),
+            &[eye],
             |points, truth, normals, _| {
                 for ((point, t), n) in points.iter().zip(truth).zip(normals) {
                     assert!(n.dot(&(eye - point)) >= 0.0 && t.dot(n).abs() > 0.95);
@@ -185,11 +174,32 @@ mod tests {
     }
 
     #[test]
+    fn several_viewpoints_decide_the_side_of_a_plate() {
+        // Both sides of a plate of 4 mm, one seen from above and one from below.
+        let points: Vec<Point> = (0..2 * 900)
+            .map(|i| {
+                Point::new(0.002 * (i % 30) as f32, 0.002 * (i / 30 % 30) as f32, 0.004 * (i / 900) as f32)
+            })
+            .collect();
+        let n = points.len();
+        let needed = model_bytes(PointTree::bytes(n) + PointTree::scratch_bytes(n).max(scratch_bytes(n)));
+        let mut memory = vec![0; needed];
+        let mut arena = Arena::new(&mut memory, needed).unwrap();
+        let tree = PointTree::build(&points, &mut arena).unwrap();
+        let mut normals = vec![Vector::zeros(); n];
+        let eyes = [Point::new(0.03, 0.03, 0.5), Point::new(0.03, 0.03, -0.5)];
+        complete(&tree, &mut normals, &eyes, Vector::z(), arena.scratch()).unwrap();
+        let is_right = |(p, n): &(&Point, &Vector)| n.z * (p.z - 0.002) > 0.0;
+        let right = tree.points().iter().zip(&normals).filter(is_right).count();
+        assert!(right > n * 97 / 100, "{right} of {n}");
+    }
+
+    #[test]
     fn a_few_missing_ones_follow_their_neighbours() {
         // Known normals point inwards here, so that the missing ones are seen to follow them; then all are reversed.
         let known = |i: usize, normal: Vector| if i.is_multiple_of(7) { Vector::zeros() } else { -normal };
-        with_completed(known, None, |_, truth, normals, completed| {
-            assert_eq!(completed, Completed { estimated: 3000_usize.div_ceil(7), reversed: 3000 });
+        with_completed(known, &[], |_, truth, normals, reversed| {
+            assert_eq!(reversed, 3000);
             assert!(truth.iter().zip(normals).all(|(t, n)| t.dot(n) > 0.95));
         });
     }
@@ -198,9 +208,9 @@ mod tests {
     fn given_normals_that_point_inwards_are_reversed() {
         with_completed(
             |_, normal| -normal,
-            None,
-            |_, truth, normals, completed| {
-                assert_eq!(completed, Completed { estimated: 0, reversed: 3000 });
+            &[],
+            |_, truth, normals, reversed| {
+                assert_eq!(reversed, 3000);
                 assert!(truth.iter().zip(normals).all(|(t, n)| t == n));
             },
         );
@@ -211,10 +221,10 @@ mod tests {
         let sign = |i: usize| if i.wrapping_mul(2_654_435_761) & 64 == 0 { 1.0 } else { -1.0 };
         with_completed(
             |i, normal| normal * sign(i),
-            None,
-            |_, truth, normals, completed| {
+            &[],
+            |_, truth, normals, reversed| {
                 let wrong = (0..3000).filter(|&i| sign(i) < 0.0).count();
-                assert!(wrong > 1000 && completed == Completed { estimated: 0, reversed: wrong });
+                assert!(wrong > 1000 && reversed == wrong);
                 assert!(truth.iter().zip(normals).all(|(t, n)| t == n));
             },
         );
@@ -224,9 +234,9 @@ mod tests {
     fn given_normals_that_are_right_stay() {
         with_completed(
             |_, normal| normal,
-            None,
-            |_, truth, normals, completed| {
-                assert_eq!(completed, Completed::default());
+            &[],
+            |_, truth, normals, reversed| {
+                assert_eq!(reversed, 0);
                 assert!(truth.iter().zip(normals).all(|(t, n)| t == n));
             },
         );
@@ -239,7 +249,7 @@ mod tests {
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let tree = PointTree::build(&[Point::origin()], &mut arena).unwrap();
         let mut normals = [Vector::zeros()];
-        complete(&tree, &mut normals, None, Vector::z(), arena.scratch()).unwrap();
+        complete(&tree, &mut normals, &[], Vector::z(), arena.scratch()).unwrap();
         assert!((normals[0].norm() - 1.0).abs() < 1e-5);
     }
 }

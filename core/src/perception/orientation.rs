@@ -1,7 +1,7 @@
 //! Which side of a surface is outside: turns the normals of a cloud so that they agree with each other and point out of
 //! the solid.
 
-use crate::geometry::{Neighbour, Point, PointTree, Vector};
+use crate::geometry::{Neighbour, Point, PointTree, Vector, unit_or};
 use crate::heap::Heap;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use bytemuck::{Pod, Zeroable};
@@ -17,6 +17,8 @@ const MIN_INWARD: f32 = 0.8;
 const MAX_THICKNESS: f32 = 0.025;
 /// Cosine between opposing normals, and between a normal and the way to the opposing point.
 const OPPOSING: f32 = 0.7;
+/// Cosine of the angle to a viewpoint within which a point hides another.
+const HIDING: f32 = 0.95;
 /// Points of a piece whose votes must agree, net, for it to be reversed or kept by them: by chance fewer do.
 const MIN_VOTES: f32 = 8.0;
 
@@ -87,12 +89,13 @@ pub(crate) fn judge(tree: &PointTree, normals: &[Vector]) -> Given {
 /// Signs are propagated from neighbour to neighbour across the least bends first (Hoppe et al. 1992, "Surface
 /// Reconstruction from Unorganized Points"), along circular arcs (König and Gumhold 2009, "Consistent Propagation of
 /// Normal Orientations in Point Clouds"). Sharp bends cut the cloud into pieces, because the side beyond one, as where
-/// a bar meets a plate, is not certain. Each piece then takes the side that its opposing points say, or else its
-/// curvature, because what things hang on is mostly convex. A piece for which neither decides keeps its side against
+/// a bar meets a plate, is not certain. Each piece then takes the side that the `viewpoints` saw or, if there are none, the
+/// one that its opposing points say, or else its curvature, because what things hang on is mostly convex. A piece for which neither decides keeps its side against
 /// the piece that it was reached from, and the first of all faces `up` at its top.
 pub(crate) fn orient(
     tree: &PointTree,
     normals: &mut [Vector],
+    viewpoints: &[Point],
     up: Vector,
     mut scratch: Arena,
 ) -> Result<(), OutOfMemory> {
@@ -150,6 +153,7 @@ pub(crate) fn orient(
     for index in voters(points.len()) {
         let votes = &mut votes[piece_of[index] as usize];
         let is_free = |other: usize| piece_of[other] != piece_of[index];
+        votes.views += seen_side(tree, normals, index, viewpoints);
         votes.pairs -= opposing_side(tree, normals, index, is_free).unwrap_or(0.0);
         votes.divergence += divergence(tree, normals, index);
         votes.voters += 1.0;
@@ -175,6 +179,8 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct Votes {
+    /// Points seen from in front of the normals, less those seen from behind them.
+    views: f32,
     /// Opposing points behind the normals, less those in front of them.
     pairs: f32,
     /// Sum of the divergences of the normals.
@@ -188,7 +194,9 @@ struct Votes {
 impl Votes {
     /// The sign, if the votes are clear.
     fn decide(&self) -> Option<f32> {
-        if self.pairs.abs() >= MIN_VOTES.max(MIN_SHARE * self.voters) {
+        if self.views.abs() > MIN_SHARE * self.voters {
+            Some(self.views.signum())
+        } else if self.pairs.abs() >= MIN_VOTES.max(MIN_SHARE * self.voters) {
             Some(self.pairs.signum())
         } else if self.voters >= MIN_VOTES && self.divergence.abs() > MIN_DIVERGENCE * self.voters {
             Some(self.divergence.signum())
@@ -209,6 +217,33 @@ fn transported(tree: &PointTree, normals: &[Vector], from: usize, to: usize) -> 
     let (normal, way) = (normals[from], tree.points()[to] - tree.points()[from]);
     let length_squared = way.norm_squared();
     if length_squared > 0.0 { normal - way * (2.0 * normal.dot(&way) / length_squared) } else { normal }
+}
+
+/// On which side of a point's normal it was seen from: 1 in front of it, -1 behind it, 0 if every viewpoint is hidden by
+/// other points. Of several, the viewpoint that looks most directly at the surface counts.
+fn seen_side(tree: &PointTree, normals: &[Vector], index: usize, viewpoints: &[Point]) -> f32 {
+    let point = tree.points()[index];
+    let mut side = 0.0_f32;
+    for viewpoint in viewpoints {
+        let way = unit_or(viewpoint - point, Vector::zeros());
+        let cosine = way.dot(&normals[index]);
+        if cosine.abs() <= side.abs() {
+            continue;
+        }
+        let mut is_hidden = false;
+        tree.for_each_within(&point, MAX_THICKNESS, |neighbour| {
+            let offset = tree.points()[neighbour.index as usize] - point;
+            let is_in_the_way = offset.dot(&way) > HIDING * libm::sqrtf(neighbour.distance_squared);
+            // Points of the surface itself are at its side of the tangent plane only by noise.
+            let is_off_surface =
+                offset.dot(&normals[index]).abs() > 0.5 * libm::sqrtf(neighbour.distance_squared);
+            is_hidden |= is_in_the_way && is_off_surface;
+        });
+        if !is_hidden {
+            side = cosine;
+        }
+    }
+    if side == 0.0 { 0.0 } else { side.signum() }
 }
 
 /// On which side of a point's normal the nearest point of an opposite surface lies: -1 behind it, as through a solid, 1

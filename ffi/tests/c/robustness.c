@@ -206,7 +206,8 @@ static void counts_and_numbers(void) {
     const float x = vertices[3][1], y = points[5][2], n = normals[7][0];
     const float viewpoint[3] = {0, 0, numbers[i]};
     hangpose_cloud seen = cloud;
-    seen.viewpoint = viewpoint;
+    seen.viewpoints = viewpoint;
+    seen.viewpoint_count = 1;
     vertices[3][1] = points[5][2] = normals[7][0] = numbers[i];
     REFUSED(make_object(memory, object_size, &mesh, &params, NULL));
     CHECK(detail.index == 3 && strcmp(detail.field, "mesh.vertices") == 0);
@@ -218,6 +219,12 @@ static void counts_and_numbers(void) {
     vertices[3][1] = x;
     normals[7][0] = n;
     REFUSED(make_supporter(other, supporter_size, &seen, &params));
+    CHECK(detail.index == 0 && strcmp(detail.field, "cloud.viewpoints") == 0);
+    const float region[6] = {0, 0, numbers[i], 1, 1, 1};
+    hangpose_cloud within = cloud;
+    within.region = region;
+    REFUSED(make_supporter(other, supporter_size, &within, &params));
+    CHECK(strcmp(detail.field, "cloud.region") == 0);
   }
   triangles[9][2] = UINT32_MAX;
   REFUSED(make_object(memory, object_size, &mesh, &params, NULL));
@@ -261,7 +268,14 @@ static void overlaps(void) {
   c.normals = (float *)(void *)inside;
   CHECK(make_supporter(memory, size, &c, &params) == HANGPOSE_ERROR_OVERLAP);
   c.normals = *normals;
-  c.viewpoint = (float *)(void *)inside;
+  c.viewpoints = (float *)(void *)inside;
+  c.viewpoint_count = 1;
+  CHECK(make_supporter(memory, size, &c, &params) == HANGPOSE_ERROR_OVERLAP);
+  c.viewpoint_count = 0;
+  c.marks = inside;
+  CHECK(make_supporter(memory, size, &c, &params) == HANGPOSE_ERROR_OVERLAP);
+  c.marks = NULL;
+  c.region = (float *)(void *)inside;
   CHECK(make_supporter(memory, size, &c, &params) == HANGPOSE_ERROR_OVERLAP);
   *m_inside = mesh;
   CHECK(make_object(memory, size, m_inside, &params, NULL) == HANGPOSE_ERROR_OVERLAP);

@@ -36,9 +36,15 @@ int main() {
   auto few =
       hangpose::supporter::create({points, hangpose::view<const hangpose::vec3>(normals.data(), 5)}, params);
   CHECK(!few && std::strcmp(few.error().field(), "cloud.normals") == 0);
-  hangpose::vec3 nowhere{0.0f, 0.0f, NAN};
-  auto seen = hangpose::supporter::create({points, {}, &nowhere}, params);
-  CHECK(!seen && std::strcmp(seen.error().field(), "cloud.viewpoint") == 0);
+  const std::vector<hangpose::vec3> nowhere{{0.0f, 0.0f, NAN}};
+  auto seen = hangpose::supporter::create(hangpose::cloud(points).seen_from(nowhere), params);
+  CHECK(!seen && std::strcmp(seen.error().field(), "cloud.viewpoints") == 0);
+  const std::array<hangpose::vec3, 2> corners{{{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 1.0f}}};
+  auto within = hangpose::supporter::create(hangpose::cloud(points).hang_within(corners), params);
+  CHECK(!within && std::strcmp(within.error().field(), "cloud.region") == 0);
+  const std::vector<unsigned char> marks(3, 1);
+  auto marked = hangpose::supporter::create(hangpose::cloud(points).hang_on(marks), params);
+  CHECK(!marked && std::strcmp(marked.error().field(), "cloud.marks") == 0);
   hangpose::params wrong;
   wrong.max_collision = 2.0f;
   auto refused = hangpose::object::create({vertices, triangles}, wrong);

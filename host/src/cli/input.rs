@@ -2,10 +2,10 @@
 
 use super::terminal::say;
 use super::{Axis, CloudArguments};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use hangpose::files::{CloudFile, MeshFile, SupporterFile};
-use hangpose::geometry::{Aabb, Cloud};
-use hangpose::hanging::{NormalCounts, Supporter};
+use hangpose::geometry::{Aabb, Cloud, Point};
+use hangpose::hanging::{CleaningCounts, NormalCounts, Supporter};
 use hangpose::{TooLarge, sample_supporter};
 use std::path::Path;
 
@@ -44,7 +44,7 @@ pub(super) fn supporter(
     seed: u64,
 ) -> Result<Placed<CloudFile>> {
     let at = || path.display().to_string();
-    let (cloud, notes) = match file {
+    let (mut cloud, notes) = match file {
         SupporterFile::Mesh(mut mesh) => {
             TooLarge::check_mesh(&mesh).with_context(at)?;
             placement.apply(&mut mesh.vertices);
@@ -54,6 +54,8 @@ pub(super) fn supporter(
         SupporterFile::Cloud(mut cloud) => {
             TooLarge::check_cloud(&cloud).with_context(at)?;
             placement.apply(&mut cloud.points);
+            placement.apply(&mut cloud.viewpoints);
+            cloud.origin = placement.up.turn(cloud.origin.map(|x| x * f64::from(placement.scale)));
             for normal in cloud.normals.iter_mut().flatten() {
                 *normal = placement.up.turn(*normal);
             }
@@ -62,25 +64,49 @@ pub(super) fn supporter(
         }
     };
     let aabb = Aabb::of(cloud.cloud().with_context(at)?.points());
+    if !arguments.viewpoint.is_empty() {
+        cloud.viewpoints = arguments.viewpoint.iter().map(|view| in_cloud(&cloud, *view)).collect();
+        cloud.cloud().context("--viewpoint")?;
+    }
     let scale_warning = placement.warn_of_size(&aabb, "supporter");
     tell(path, &notes, &scale_warning);
     Ok(Placed { shape: cloud, scale_warning })
 }
 
-/// The points as the core takes them, with the viewpoint if one is given.
+/// The points as the core takes them, with the places to hang on.
 pub(super) fn seen<'a>(file: &'a CloudFile, arguments: &CloudArguments) -> Result<Cloud<'a>> {
     let cloud = file.cloud()?;
-    match arguments.viewpoint {
-        Some(viewpoint) => cloud.seen_from(viewpoint).context("--viewpoint"),
-        None => Ok(cloud),
-    }
+    let Some([ax, ay, az, bx, by, bz]) = arguments.region else { return Ok(cloud) };
+    let corners = [[ax, ay, az], [bx, by, bz]].map(|corner| in_cloud(file, corner));
+    let cloud = cloud.hang_within(corners[0], corners[1]).context("--region")?;
+    let is_inside = |p: &Point| (0..3).all(|i| corners[0][i] <= p[i] && p[i] <= corners[1][i]);
+    ensure!(
+        cloud.points().iter().any(is_inside),
+        "--region: no point of the supporter is in the box; give its corners in metres in the supporter frame, after scale and up axis"
+    );
+    Ok(cloud)
 }
 
-/// Prints notes about the normals of a cloud. The reader has already reported those that were not of unit length.
-pub(super) fn tell_of_normals(path: &Path, supporter: &Supporter, arguments: &CloudArguments) {
+/// Coordinates of the supporter frame as an offset from the cloud's origin.
+fn in_cloud(cloud: &CloudFile, position: [f64; 3]) -> [f32; 3] {
+    [0, 1, 2].map(|i| (position[i] - cloud.origin[i]) as f32)
+}
+
+/// Prints notes about the points and the normals of a cloud. The reader has already reported those that were not of unit length.
+pub(super) fn tell_of_cloud(path: &Path, supporter: &Supporter, cloud: &Cloud) {
+    let CleaningCounts { strays, on_planes, .. } = supporter.cleaning();
+    let all = cloud.points().len();
+    for (count, what) in [
+        (strays, "are strays in the air and were dropped"),
+        (on_planes, "are on walls or tables, which are obstacles: nothing hangs on them"),
+    ] {
+        if count > 0 {
+            say("note", format_args!("{}: {count} of {all} points {what}", path.display()));
+        }
+    }
     let NormalCounts { estimated, reversed, .. } = supporter.normals();
-    let points = supporter.points().points().len();
-    let is_seen = arguments.viewpoint.is_some();
+    let points = cloud.points().len();
+    let is_seen = !cloud.viewpoints().is_empty();
     let side = match (estimated == points, is_seen) {
         (true, true) => "and face the viewpoint",
         (true, false) => "and their signs are a guess: pass --viewpoint if the camera position is known",
@@ -95,7 +121,8 @@ pub(super) fn tell_of_normals(path: &Path, supporter: &Supporter, arguments: &Cl
             ),
         );
     }
-    if reversed == points {
+    let kept = supporter.points().points().len();
+    if reversed == kept {
         let note = "the normals pointed into the solid, so all were reversed";
         say("note", format_args!("{}: {note}", path.display()));
     } else if reversed > 0 {
@@ -106,7 +133,7 @@ pub(super) fn tell_of_normals(path: &Path, supporter: &Supporter, arguments: &Cl
         say(
             "note",
             format_args!(
-                "{}: the signs of the normals did not agree, so {reversed} of {points} were reversed {side}",
+                "{}: the signs of the normals did not agree, so {reversed} of {kept} were reversed {side}",
                 path.display()
             ),
         );

@@ -120,7 +120,7 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
     let mut memory = Vec::new();
     let supporter = analyze_supporter(&cloud, &params, &mut memory, &Monitor::new())?;
     let seconds = start.elapsed().as_secs_f64();
-    input::tell_of_normals(path, &supporter, &arguments.cloud);
+    input::tell_of_cloud(path, &supporter, &cloud);
     let extents = supporter.points().aabb().extents();
     let inspected = InspectedSupporter {
         schema: json::SCHEMA,
@@ -128,6 +128,9 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
         points: cloud.points().len(),
         extents: extents.into(),
         scale_warning,
+        points_merged: supporter.cleaning().merged,
+        strays: supporter.cleaning().strays,
+        points_on_planes: supporter.cleaning().on_planes,
         normals_estimated: supporter.normals().estimated,
         normals_renormalised: supporter.normals().renormalised,
         counts: supporter.places().into(),
@@ -141,6 +144,10 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
     let mut text = format!(
         "supporter, {} points, {} normals estimated, {} renormalised\n",
         inspected.points, inspected.normals_estimated, inspected.normals_renormalised
+    );
+    text += &format!(
+        "cleaning        {} points merged with others, {} strays dropped, {} left on walls and tables\n",
+        inspected.points_merged, inspected.strays, inspected.points_on_planes
     );
     text += &format!("size            {} mm\n", millimetres(&extents));
     text += &scale(&inspected.scale_warning);

@@ -8,6 +8,7 @@ use hangpose::hanging::sites::{Cost, HangingSite, SupportSite};
 use hangpose::hanging::{HangingPose, Rejection, Stage};
 use hangpose::mechanics::{Contact, Margin};
 use serde::Serialize;
+use serde_json::Value;
 
 /// Version of the schema, raised by every change that a reader of the last version could misread.
 pub(super) const SCHEMA: u32 = 2;
@@ -119,6 +120,12 @@ pub(super) struct InspectedSupporter<'a> {
     pub(super) extents: [f32; 3],
     /// Warning about an implausible size.
     pub(super) scale_warning: Option<String>,
+    /// Points that were merged with others at the same place.
+    pub(super) points_merged: usize,
+    /// Points alone in the air, which were dropped.
+    pub(super) strays: usize,
+    /// Points left on large planes, on which nothing hangs.
+    pub(super) points_on_planes: usize,
     pub(super) normals_estimated: usize,
     pub(super) normals_renormalised: usize,
     pub(super) counts: SupporterCounts,
@@ -176,6 +183,37 @@ impl From<&Rejection> for Reason {
             counts: (&rejection.counts).into(),
         }
     }
+}
+
+/// The prediction as indented JSON, its poses and places moved by `origin`, metres, from the supporter's coordinates to
+/// those of its file.
+pub(super) fn text_in_frame(prediction: &Prediction, origin: [f64; 3]) -> String {
+    if origin == [0.0; 3] {
+        return text(prediction);
+    }
+    let mut document = serde_json::to_value(prediction).expect("every key is a string");
+    let add = |value: &mut Value, places: [usize; 3]| {
+        for (place, offset) in places.into_iter().zip(origin) {
+            if let Some(number) = value.get_mut(place)
+                && let Some(x) = number.as_f64()
+            {
+                *number = (x + offset).into();
+            }
+        }
+    };
+    for pose in document["poses"].as_array_mut().into_iter().flatten() {
+        for matrix in ["pose", "release_pose", "rest_pose"] {
+            add(&mut pose[matrix], [3, 7, 11]);
+        }
+        add(&mut pose["position"], [0, 1, 2]);
+        for contact in pose["contacts"].as_array_mut().into_iter().flatten() {
+            add(&mut contact["position"], [0, 1, 2]);
+        }
+        if pose["supporter_site"].is_object() {
+            add(&mut pose["supporter_site"]["position"], [0, 1, 2]);
+        }
+    }
+    text(&document)
 }
 
 /// The value as indented JSON with a trailing line break.

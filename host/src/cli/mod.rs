@@ -54,8 +54,8 @@ pub(crate) struct PredictArguments {
     #[arg(long, value_name = "K", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     top: u32,
     /// Centre of mass of the object, in metres in the object frame (after scale and up axis).
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, allow_hyphen_values = true)]
-    com: Option<[f32; 3]>,
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
+    com: Option<[f64; 3]>,
     /// File for the result as JSON; - prints the JSON to standard output instead of the table.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -111,6 +111,10 @@ struct MethodArguments {
     /// under `params`.
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
+    /// Direction of gravity in the supporter frame (after the up axis), of any length, as 0,1,0 in the frame of a camera
+    /// that looks ahead. The default is that of the params file, or -z.
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
+    gravity: Option<[f64; 3]>,
     /// Seed of the samples; the default is the seed of the params file, or 0.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
@@ -123,9 +127,13 @@ struct CloudArguments {
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(100..=500_000))]
     supporter_points: u32,
     /// For supporters: camera position that orients normals that are missing or do not agree in sign, in metres in the
-    /// supporter frame (after scale and up axis).
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, allow_hyphen_values = true)]
-    viewpoint: Option<[f32; 3]>,
+    /// supporter frame (after scale and up axis). Repeat it for several cameras. The default is what the file says.
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
+    viewpoint: Vec<[f64; 3]>,
+    /// For supporters: box that limits the places to hang on, by its lower and its upper corner in metres in the supporter
+    /// frame (after scale and up axis). What is outside remains an obstacle.
+    #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = parse_numbers::<6>, allow_hyphen_values = true)]
+    region: Option<[f64; 6]>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -165,7 +173,7 @@ impl Axis {
     }
 
     /// Rotates coordinates by the smallest angle that maps this axis to z.
-    fn turn(self, [x, y, z]: [f32; 3]) -> [f32; 3] {
+    fn turn<T: std::ops::Neg<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         match self {
             Self::X => [-z, y, x],
             Self::Y => [x, -z, y],
@@ -177,11 +185,11 @@ impl Axis {
     }
 }
 
-fn parse_point(text: &str) -> Result<[f32; 3], String> {
-    let numbers: Result<Vec<f32>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    match numbers.map(<[f32; 3]>::try_from) {
-        Ok(Ok(point)) if point.iter().all(|x| x.is_finite()) => Ok(point),
-        _ => Err("use three comma-separated numbers, as in 0.01,0,-0.2".into()),
+fn parse_numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    match numbers.map(<[f64; N]>::try_from) {
+        Ok(Ok(numbers)) if numbers.iter().all(|x| x.is_finite()) => Ok(numbers),
+        _ => Err(format!("use {N} comma-separated numbers, as in 0.01,0,-0.2")),
     }
 }
 
@@ -220,8 +228,10 @@ mod tests {
 
     #[test]
     fn points_and_scales_are_numbers() {
-        assert_eq!(parse_point("0.01, -2,3e-1"), Ok([0.01, -2.0, 0.3]));
-        assert!(["1,2", "1,2,3,4", "a,b,c", "1,2,nan", ""].iter().all(|text| parse_point(text).is_err()));
+        assert_eq!(parse_numbers("0.01, -2,3e-1"), Ok([0.01, -2.0, 0.3]));
+        assert!(
+            ["1,2", "1,2,3,4", "a,b,c", "1,2,nan", ""].iter().all(|text| parse_numbers::<3>(text).is_err())
+        );
         assert!(["0", "-1", "inf", "nan", "x"].iter().all(|text| parse_scale(text).is_err()));
     }
 }

@@ -16,6 +16,10 @@ impl MethodArguments {
             Some(path) => overlay(&profile, path)?,
             None => profile,
         };
+        if let Some(gravity) = self.gravity {
+            params.gravity = gravity.map(|x| x as f32);
+            params.validate().context("--gravity")?;
+        }
         if let Some(seed) = self.seed {
             params.seed = seed;
         }

@@ -8,9 +8,9 @@ use super::terminal::{self, say};
 use super::{PredictArguments, progress};
 use anyhow::{Context, Result};
 use hangpose::files;
-use hangpose::geometry::{Aabb, Mesh, Point};
+use hangpose::geometry::{Aabb, Cloud, Mesh, Point};
 use hangpose::hanging::sites::{Cost, SiteMatch};
-use hangpose::hanging::{self, HangingPose, Object, Rest, Supporter, predict, predict_bytes};
+use hangpose::hanging::{self, HangingPose, Object, Rest, Stage, Supporter, predict, predict_bytes};
 use hangpose::memory::Limits;
 use hangpose::{CentreOfMass, Monitor};
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     // The cheapest checks come first, so that a mistake is reported at once: constants, output file, object, supporter.
     let mut params = arguments.method.params()?;
     if let Some(com) = arguments.com {
-        params.centre_of_mass = CentreOfMass::Given(com);
+        params.centre_of_mass = CentreOfMass::Given(com.map(|x| x as f32));
         params.validate().context("--com")?;
     }
     let inputs = [Some(&arguments.object), Some(&arguments.supporter), arguments.method.params.as_ref()];
@@ -80,9 +80,9 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     })?;
     seconds.total = start.elapsed().as_secs_f64();
 
-    input::tell_of_normals(&arguments.supporter, &supporter, &arguments.cloud);
+    input::tell_of_cloud(&arguments.supporter, &supporter, cloud);
     warn_of_centre_of_mass(mesh, arguments);
-    let text = table(&prediction, mesh, &object, &supporter);
+    let text = table(&prediction, (mesh, cloud), &object, &supporter);
     if let Some(output) = output {
         let document = Prediction {
             schema: json::SCHEMA,
@@ -108,7 +108,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
             },
             params,
         };
-        output.write(&json::text(&document))?;
+        output.write(&json::text_in_frame(&document, points.origin))?;
     }
     if is_table_shown {
         terminal::print(&text)?;
@@ -126,7 +126,7 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 /// Warns of a centre of mass outside the object's bounding box, which is in another unit or another frame.
 fn warn_of_centre_of_mass(mesh: &Mesh, arguments: &PredictArguments) {
     let (Some(com), aabb) = (arguments.com, mesh.aabb()) else { return };
-    let (offset, half) = (Point::from(com) - aabb.centre(), aabb.extents() / 2.0);
+    let (offset, half) = (Point::from(com.map(|x| x as f32)) - aabb.centre(), aabb.extents() / 2.0);
     if (0..3).any(|i| offset[i].abs() > half[i]) {
         let warning = "--com is outside the object's bounding box; give metres in the object frame, after scale and up axis";
         say("warning", format_args!("{}: {warning}", arguments.object.display()));
@@ -134,7 +134,12 @@ fn warn_of_centre_of_mass(mesh: &Mesh, arguments: &PredictArguments) {
 }
 
 /// The poses as a table, or the reason why there are none.
-fn table(prediction: &hanging::Prediction, mesh: &Mesh, object: &Object, supporter: &Supporter) -> String {
+fn table(
+    prediction: &hanging::Prediction,
+    (mesh, cloud): (&Mesh, &Cloud),
+    object: &Object,
+    supporter: &Supporter,
+) -> String {
     let size = |aabb: &Aabb| {
         let [x, y, z] = <[f32; 3]>::from(aabb.extents()).map(|x| 1000.0 * x);
         format!("{x:.0} x {y:.0} x {z:.0} mm")
@@ -145,12 +150,15 @@ fn table(prediction: &hanging::Prediction, mesh: &Mesh, object: &Object, support
         closedness(object.mass()),
         size(&mesh.aabb()),
         candidates(object.places().sites().len(), "hanging sites", object.places().contacts().len()),
-        supporter.points().points().len(),
+        cloud.points().len(),
         size(&supporter.points().aabb()),
         candidates(supporter.places().sites().len(), "support sites", supporter.places().contacts().len()),
     );
     if let Some(rejection) = &prediction.rejection {
         text += &format!("nothing hangs: {}\n", rejection.stage);
+        if rejection.stage == Stage::NoSupport {
+            text += "is up z in the supporter's frame? If not, pass --supporter-up or --gravity\n";
+        }
         return text;
     }
     let point = |p: &Point| {

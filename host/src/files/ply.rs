@@ -17,7 +17,7 @@ use super::{FileError, Place};
 /// The vertices and faces of a file, unchecked.
 #[derive(Default)]
 pub(super) struct Ply {
-    pub(super) vertices: Vec<[f32; 3]>,
+    pub(super) vertices: Vec<[f64; 3]>,
     /// One normal per vertex, if the file has normals.
     pub(super) normals: Option<Vec<[f32; 3]>>,
     pub(super) faces: Vec<Face>,
@@ -36,7 +36,7 @@ const NAMES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 /// A vertex or a face; other properties are dropped.
 #[derive(Default)]
 struct Row {
-    numbers: [f32; 6],
+    numbers: [f64; 6],
     indices: Vec<i64>,
 }
 
@@ -47,7 +47,7 @@ impl PropertyAccess for Row {
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
         if let Some(slot) = NAMES.iter().position(|known| *known == name) {
-            return match property.to_f32_lossy() {
+            return match scalar(&property) {
                 Some(value) => {
                     self.numbers[slot] = value;
                     PropertyAccessResult::Set
@@ -68,6 +68,14 @@ impl PropertyAccess for Row {
             _ => return PropertyAccessResult::UnsupportedType,
         };
         PropertyAccessResult::Set
+    }
+}
+
+/// A number in full precision; `None` for a list.
+fn scalar(property: &Property) -> Option<f64> {
+    match *property {
+        Property::Double(value) => Some(value),
+        _ => property.to_f32_lossy().map(f64::from),
     }
 }
 
@@ -136,8 +144,8 @@ impl Ply {
             return Err(source.malformed(Place::Part("element vertex".into()), "it lacks x, y or z"));
         }
         self.vertices = rows.iter().map(|(row, _)| [0, 1, 2].map(|k| row.numbers[k])).collect();
-        self.normals =
-            has(&NAMES[3..]).then(|| rows.iter().map(|(row, _)| [3, 4, 5].map(|k| row.numbers[k])).collect());
+        self.normals = has(&NAMES[3..])
+            .then(|| rows.iter().map(|(row, _)| [3, 4, 5].map(|k| row.numbers[k] as f32)).collect());
         Ok(())
     }
 

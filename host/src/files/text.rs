@@ -22,15 +22,15 @@ pub(super) fn before_comment(line: &str) -> &str {
 }
 
 /// Parses a number. The spellings of NaN by C libraries (`-nan(ind)`, `1.#QNAN`) are accepted.
-pub(super) fn number(word: &str) -> Option<f32> {
+pub(super) fn number(word: &str) -> Option<f64> {
     word.parse().ok().or_else(|| {
         let bare = word.trim_start_matches(['-', '+']).to_ascii_lowercase();
-        (bare.starts_with("nan") || bare.starts_with("1.#")).then_some(f32::NAN)
+        (bare.starts_with("nan") || bare.starts_with("1.#")).then_some(f64::NAN)
     })
 }
 
 /// Parses the next three words as numbers; `Err` is the reason for an error message.
-pub(super) fn three<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<[f32; 3], String> {
+pub(super) fn three<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<[f64; 3], String> {
     let mut out = [0.0; 3];
     for value in &mut out {
         let word = words.next().ok_or("expected three numbers")?;

@@ -73,3 +73,60 @@ fn millimetres_give_the_same_poses() {
     let scaled = scene.predict_with(&object, &scene.peg, &["--object-scale", "0.0009765625"]);
     assert_eq!(timeless(scene.predict(&[])), timeless(scaled));
 }
+
+#[test]
+fn a_map_frame_gets_its_poses_back() {
+    let scene = Scene::new();
+    let offset = [500_000.0, 5_400_000.0, 300.0];
+    let points = shapes::peg().into_iter().map(|[x, y, z, a, b, c]| {
+        // To 1/8192 m, so that the sums are exact.
+        let [x, y, z] = [x, y, z].map(|x| (x * 8192.0).round() / 8192.0);
+        [x, y, z, a, b, c]
+    });
+    let points: Vec<_> = points.collect();
+    let near = scene.write("near.xyz", shapes::xyz(&points));
+    let moved =
+        points.iter().map(|[x, y, z, a, b, c]| [x + offset[0], y + offset[1], z + offset[2], *a, *b, *c]);
+    let far = scene.write("far.xyz", shapes::xyz(&moved.collect::<Vec<_>>()));
+    let [near, far] =
+        [near, far].map(|file| scene.predict_with(&scene.ring, &file, &["--top", "1"])["poses"][0].clone());
+    shapes::assert_hangs_by_the_ring(&near);
+    for (i, offset) in offset.into_iter().enumerate() {
+        for (name, at) in [("position", i), ("pose", 4 * i + 3), ("rest_pose", 4 * i + 3)] {
+            let [near, far] = [&near, &far].map(|pose| number(&pose[name][at]));
+            // The two clouds begin at different offsets, so that their last bits differ, and the poses by a little.
+            assert!((far - offset - near).abs() < 0.004, "{name}: {near} and {far}");
+        }
+        let [near, far] = [&near, &far].map(|pose| number(&pose["contacts"][0]["position"][i]));
+        assert!((far - offset - near).abs() < 0.02, "{near} and {far}");
+    }
+}
+
+#[test]
+fn a_region_limits_where_it_hangs() {
+    let scene = Scene::new();
+    for region in [["-0.05,-1,-1,-0.02,1,1", "left"], ["0.02,-1,-1,0.05,1,1", "right"]] {
+        let document = scene.predict(&["--region", region[0], "--top", "1"]);
+        let x = number(&document["poses"][0]["position"][0]);
+        assert_eq!(x > 0.0, region[1] == "right", "{x} with {region:?}");
+    }
+    let [run] =
+        [run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--region", "5,5,5,6,6,6")];
+    assert!(run.stderr.contains("--region: no point of the supporter is in the box"), "{}", run.stderr);
+    let run = run!("predict", "--object", scene.ring, "--supporter", scene.peg, "--region", "1,0,0,0,1,1");
+    assert!(run.stderr.contains("--region") && run.stderr.contains("lower corner first"), "{}", run.stderr);
+}
+
+#[test]
+fn gravity_points_where_it_is_told() {
+    let scene = Scene::new();
+    // In the frame of a camera that looks ahead, y is down.
+    let camera = shapes::peg().into_iter().map(|[x, y, z, a, b, c]| [x, -z, y, a, -c, b]);
+    let camera = scene.write("camera.xyz", shapes::xyz(&camera.collect::<Vec<_>>()));
+    let document = scene.predict_with(&scene.ring, &camera, &["--gravity", "0,1,0", "--top", "1"]);
+    let pose = &document["poses"][0]["pose"];
+    // The ring hangs by its hole at the top of its frame: its z axis points up, along -y.
+    assert!(number(&pose[6]) < -0.9, "{pose}");
+    let run = run!("predict", "--object", scene.ring, "--supporter", camera, "--gravity", "0,0,0");
+    assert!(run.stderr.contains("--gravity"), "{}", run.stderr);
+}

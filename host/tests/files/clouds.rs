@@ -26,9 +26,17 @@ fn pcd_finds_its_fields_by_name() {
         cloud("scan.pcd", header + "0 9 9 9 255 3 2 1 1 0 7\nnan 9 9 9 255 6 5 4 nan nan 7\n").unwrap();
     assert_eq!(cloud.points, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
     assert_eq!(cloud.normals, Some(vec![[0.0, 0.0, 1.0], [0.0; 3]]));
-    let notes =
-        ["VIEWPOINT was ignored: the points keep their coordinates in the file.", "1 of 2 normals are zero."];
-    assert_eq!(cloud.notes, notes);
+    assert_eq!(cloud.viewpoints, [[0.0, 0.0, 1.0]]);
+    assert_eq!(cloud.notes, ["1 of 2 normals are zero."]);
+}
+
+#[test]
+fn coordinates_of_a_map_keep_their_details() {
+    let text = "500000.125 5400000.5 300.0625\n500000.25 5400000.5 300.0625\n500000.125 5400000.75 300.125\n";
+    let cloud = cloud("map.xyz", text).unwrap();
+    assert_eq!(cloud.origin, [500_000.0, 5_400_000.0, 300.0]);
+    assert_eq!(cloud.points, [[0.125, 0.5, 0.0625], [0.25, 0.5, 0.0625], [0.125, 0.75, 0.125]]);
+    assert!(cloud.notes[0].contains("was subtracted"), "{:?}", cloud.notes);
 }
 
 #[test]

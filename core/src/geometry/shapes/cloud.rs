@@ -1,5 +1,6 @@
 //! Point clouds in the caller's memory, validated.
 
+use super::aabb::Aabb;
 use super::mesh::{MAX_COUNT, is_usable};
 use crate::geometry::{MAX_COORDINATE, Point};
 
@@ -8,7 +9,9 @@ use crate::geometry::{MAX_COORDINATE, Point};
 pub struct Cloud<'a> {
     points: &'a [Point],
     normals: Option<&'a [[f32; 3]]>,
-    viewpoint: Option<Point>,
+    viewpoints: &'a [Point],
+    may_hang: Option<&'a [u8]>,
+    region: Option<Aabb>,
 }
 
 /// Why a point cloud cannot be used.
@@ -44,10 +47,26 @@ pub enum CloudError {
         /// Number of normals.
         normals: usize,
     },
-    /// A coordinate of the viewpoint is infinite, not a number, or beyond [`MAX_COORDINATE`].
+    /// A coordinate of a viewpoint is infinite, not a number, or beyond [`MAX_COORDINATE`].
     Viewpoint {
+        /// Index of the viewpoint.
+        viewpoint: usize,
         /// Its coordinates.
         position: [f32; 3],
+    },
+    /// The number of marks differs from the number of points.
+    MarkCount {
+        /// Number of points.
+        points: usize,
+        /// Number of marks.
+        marks: usize,
+    },
+    /// A corner of the region is infinite or not a number, or its lower corner is above the upper one.
+    Region {
+        /// Lower corner, metres.
+        low: [f32; 3],
+        /// Upper corner, metres.
+        high: [f32; 3],
     },
 }
 
@@ -69,9 +88,19 @@ impl core::fmt::Display for CloudError {
             Self::NormalCount { points, normals } => {
                 write!(f, "there are {points} points and {normals} normals: give one for each point, or none")
             }
-            Self::Viewpoint { position } => {
-                write!(f, "the viewpoint {position:?} is not a point in metres within ±{MAX_COORDINATE}")
+            Self::Viewpoint { viewpoint, position } => {
+                write!(
+                    f,
+                    "viewpoint {viewpoint}, {position:?}, is not a point in metres within ±{MAX_COORDINATE}"
+                )
             }
+            Self::MarkCount { points, marks } => {
+                write!(f, "there are {points} points and {marks} marks: give one for each point, or none")
+            }
+            Self::Region { low, high } => write!(
+                f,
+                "the region from {low:?} to {high:?} is empty: give the lower corner first, then the upper one, in metres"
+            ),
         }
     }
 }
@@ -99,15 +128,45 @@ impl<'a> Cloud<'a> {
                 return Err(CloudError::Normal { point, normal: normals[point] });
             }
         }
-        Ok(Self { points: bytemuck::cast_slice(points), normals, viewpoint: None })
+        Ok(Self {
+            points: bytemuck::cast_slice(points),
+            normals,
+            viewpoints: &[],
+            may_hang: None,
+            region: None,
+        })
     }
 
-    /// Sets the position of the sensor (metres, in the cloud's frame), which estimated normals face.
-    pub fn seen_from(self, viewpoint: [f32; 3]) -> Result<Self, CloudError> {
-        if !is_usable(&viewpoint) {
-            return Err(CloudError::Viewpoint { position: viewpoint });
+    /// Sets the positions of the sensor (metres, in the cloud's frame) from which the points were seen. Estimated normals
+    /// face one of them.
+    pub fn seen_from(self, viewpoints: &'a [[f32; 3]]) -> Result<Self, CloudError> {
+        if let Some(viewpoint) = viewpoints.iter().position(|p| !is_usable(p)) {
+            return Err(CloudError::Viewpoint { viewpoint, position: viewpoints[viewpoint] });
         }
-        Ok(Self { viewpoint: Some(viewpoint.into()), ..self })
+        Ok(Self { viewpoints: bytemuck::cast_slice(viewpoints), ..self })
+    }
+
+    /// Limits the places to hang on to marked points: those whose mark, one a point, is not 0. The others are obstacles.
+    pub fn hang_on(self, marks: &'a [u8]) -> Result<Self, CloudError> {
+        if marks.len() != self.points.len() {
+            return Err(CloudError::MarkCount { points: self.points.len(), marks: marks.len() });
+        }
+        Ok(Self { may_hang: Some(marks), ..self })
+    }
+
+    /// Limits the places to hang on to a box (metres, in the cloud's frame). Points outside are obstacles.
+    pub fn hang_within(self, low: [f32; 3], high: [f32; 3]) -> Result<Self, CloudError> {
+        let is_ordered = |i: usize| low[i].is_finite() && high[i].is_finite() && low[i] <= high[i];
+        if !(0..3).all(is_ordered) {
+            return Err(CloudError::Region { low, high });
+        }
+        Ok(Self { region: Some(Aabb { min: low.into(), max: high.into() }), ..self })
+    }
+
+    /// Whether an object may hang on this point of the cloud, as far as the caller says.
+    pub(crate) fn may_hang_on(&self, point: usize) -> bool {
+        self.may_hang.is_none_or(|marks| marks[point] != 0)
+            && self.region.is_none_or(|region| region.distance_squared(&self.points[point]) <= 0.0)
     }
 
     /// The points.
@@ -120,9 +179,9 @@ impl<'a> Cloud<'a> {
         self.normals
     }
 
-    /// Position of the sensor, metres, in the cloud's frame.
-    pub fn viewpoint(&self) -> Option<Point> {
-        self.viewpoint
+    /// Positions of the sensor, metres, in the cloud's frame.
+    pub fn viewpoints(&self) -> &'a [Point] {
+        self.viewpoints
     }
 }
 
@@ -142,6 +201,22 @@ mod tests {
         let error = Cloud::new(&points, Some(&[[0.0; 3], [f32::INFINITY; 3]])).unwrap_err();
         assert!(matches!(error, CloudError::Normal { point: 1, .. }));
         let cloud = Cloud::new(&points, Some(&points)).unwrap();
-        assert!(cloud.seen_from([f32::NAN; 3]).is_err() && cloud.seen_from([1.0; 3]).is_ok());
+        let error = cloud.seen_from(&[[0.0; 3], [f32::NAN; 3]]).unwrap_err();
+        assert!(matches!(error, CloudError::Viewpoint { viewpoint: 1, .. }));
+        assert!(cloud.seen_from(&[[1.0; 3]]).is_ok());
+        assert_eq!(cloud.hang_on(&[1]).unwrap_err(), CloudError::MarkCount { points: 2, marks: 1 });
+        let (low, high) = ([0.0; 3], [1.0, 1.0, -1.0]);
+        assert_eq!(cloud.hang_within(low, high).unwrap_err(), CloudError::Region { low, high });
+    }
+
+    #[test]
+    fn marks_and_the_region_limit_the_places() {
+        let points = [[0.0; 3], [1.0, 2.0, 3.0], [5.0; 3]];
+        let cloud = Cloud::new(&points, None).unwrap();
+        let allowed = |cloud: &Cloud| [0, 1, 2].map(|point| cloud.may_hang_on(point));
+        assert_eq!(allowed(&cloud), [true; 3]);
+        let within = cloud.hang_within([0.0; 3], [1.0, 2.0, 3.0]).unwrap();
+        assert_eq!(allowed(&within), [true, true, false]);
+        assert_eq!(allowed(&within.hang_on(&[0, 1, 1]).unwrap()), [false, true, false]);
     }
 }

@@ -68,8 +68,8 @@ pub(super) fn find_on_supporter(
     meter: &mut Meter,
 ) -> (SupporterCounts, Option<Stop>) {
     let up = cloud.params.up();
-    let SupporterCloud { tree, normals, is_on_plane, .. } = *cloud;
-    support_contact::Search { tree, normals, is_on_plane, up }.find(slots, meter)
+    let SupporterCloud { tree, normals, is_excluded, .. } = *cloud;
+    support_contact::Search { tree, normals, is_excluded, up }.find(slots, meter)
 }
 
 /// Bytes of working memory for [`search`], beside that for settling.

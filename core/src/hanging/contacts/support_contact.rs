@@ -25,7 +25,7 @@ pub(super) struct Search<'a> {
     /// In tree order.
     pub(super) normals: &'a [Vector],
     /// 1 for points on which nothing hangs, in tree order.
-    pub(super) is_on_plane: &'a [u8],
+    pub(super) is_excluded: &'a [u8],
     pub(super) up: Vector,
 }
 
@@ -54,12 +54,12 @@ impl Search<'_> {
         (SupporterCounts { contact_points, contacts }, None)
     }
 
-    /// Points that are not on a plane, with their normals, whose normal has at least this cosine with up.
+    /// Points that are not excluded, with their normals, whose normal has at least this cosine with up.
     fn facing_up(&self, least: f32) -> impl Iterator<Item = (&Point, &Vector)> {
-        let points = self.tree.points().iter().zip(self.normals).zip(self.is_on_plane);
+        let points = self.tree.points().iter().zip(self.normals).zip(self.is_excluded);
         let faces_up = move |normal: &Vector| normal.dot(&self.up) >= least;
         points
-            .filter(move |((_, normal), on_plane)| **on_plane == 0 && faces_up(normal))
+            .filter(move |((_, normal), excluded)| **excluded == 0 && faces_up(normal))
             .map(|(point, _)| point)
     }
 

@@ -123,7 +123,9 @@ pub(super) fn find_on_supporter(
     mut scratch: Arena,
 ) -> Result<(SupporterCounts, Option<Stop>), OutOfMemory> {
     let normals = scratch.slice::<Vector>(cloud.points.len())?;
-    for (normal, &index) in cloud.normals.iter().zip(cloud.tree.order()) {
+    // A point without a normal does not face up, and is no place to hang on.
+    let places = cloud.normals.iter().zip(cloud.is_excluded).zip(cloud.tree.order());
+    for ((normal, _), &index) in places.filter(|((_, excluded), _)| **excluded == 0) {
         normals[index as usize] = *normal;
     }
     Supportability { tree: cloud.tree, points: cloud.points, normals, params: cloud.params }

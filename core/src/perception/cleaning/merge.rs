@@ -41,12 +41,12 @@ pub(super) const fn scratch_bytes(points: usize) -> usize {
         .saturating_add(array_bytes::<u32>(points))
         .saturating_add(array_bytes::<Point>(points))
         .saturating_add(array_bytes::<u8>(points))
-        .saturating_add(planes::scratch_bytes(points))
+        .saturating_add(planes::scratch_bytes())
 }
 
-/// Entries of the hash table: a power of two, at most half of them in use.
+/// Entries of the hash table, of which at most half are in use.
 const fn table_size(points: usize) -> usize {
-    points.saturating_mul(2).saturating_add(1).next_power_of_two()
+    points.saturating_mul(2).saturating_add(1)
 }
 
 /// Merges the points at the same place; in a dense cloud and on large planes, those in the same cube. Points whose known normals differ by
@@ -148,10 +148,11 @@ fn group(
     mut visit: impl FnMut(usize, usize),
 ) -> usize {
     table.fill(0);
-    let (mask, mut count) = (table.len() - 1, 0_usize);
+    let mut count = 0_usize;
     for (index, normal) in normals.iter().enumerate() {
         let key = place(index);
-        let mut slot = hash(key) as usize & mask;
+        // The hash scaled to the length of the table.
+        let mut slot = (u64::from(hash(key)) * table.len() as u64 >> 32) as usize;
         let group = loop {
             let Some(group) = (table[slot] as usize).checked_sub(1) else {
                 count += 1;
@@ -163,7 +164,7 @@ fn group(
             if place(first) == key && normals[first].dot(normal) >= 0.0 {
                 break group;
             }
-            slot = (slot + 1) & mask;
+            slot = if slot + 1 < table.len() { slot + 1 } else { 0 };
         };
         visit(index, group);
     }

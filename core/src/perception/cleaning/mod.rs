@@ -26,7 +26,7 @@ pub(crate) struct Cleaned<'s> {
     /// Distance between points around each point, metres.
     pub(crate) spacings: &'s [f32],
     /// 1 for points on large planes, as walls and tables, on which nothing hangs.
-    pub(crate) is_on_plane: &'s [u8],
+    pub(crate) is_on_plane: &'s mut [u8],
     pub(crate) counts: CleaningCounts,
 }
 

@@ -33,10 +33,9 @@ const MIN_SHARE: f32 = 0.04;
 /// Cells of the grid along an edge: with [`CELL`], it spans 3.2 m.
 const CELLS: usize = 128;
 
-/// Bytes of working memory for a cloud of `points`.
-pub(super) const fn scratch_bytes(points: usize) -> usize {
-    let probes = if points < PROBES { points } else { PROBES };
-    array_bytes::<Point>(probes).saturating_add(array_bytes::<u8>(CELLS * CELLS))
+/// Bytes of working memory.
+pub(super) const fn scratch_bytes() -> usize {
+    array_bytes::<Point>(PROBES).saturating_add(array_bytes::<u8>(CELLS * CELLS))
 }
 
 /// A plane with a grid on it.

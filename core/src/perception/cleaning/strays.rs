@@ -18,7 +18,7 @@ const MIN_PEERS: usize = 6;
 const MAX_THICKNESS: f32 = 0.15;
 /// Largest spacing of the points of a surface, metres: an object passes between points that are farther apart.
 const MAX_SPACING: f32 = 0.05;
-/// Factor on the smaller of two spacings within which points are in one piece.
+/// Factor on the smaller of two spacings, or on that of the whole cloud, within which points are in one piece.
 const LINK: f32 = 2.0;
 /// Largest number of points of a speck.
 const MAX_SPECK: u32 = 8;
@@ -49,7 +49,7 @@ pub(super) fn find<'s>(
         let is_apart = is_apart(tree, spacings, index, overall);
         is_stray[tree.order()[index] as usize] = u8::from(is_apart);
     }
-    drop_specks(tree, spacings, is_stray, parents, sizes);
+    drop_specks(tree, (spacings, overall), is_stray, parents, sizes);
     if is_stray.iter().all(|flag| *flag > 0) {
         is_stray.fill(0);
     }
@@ -111,7 +111,7 @@ fn is_flat(offsets: &[Vector]) -> bool {
 /// Flags the points of pieces of at most [`MAX_SPECK`] points. `parents` and `sizes` are working memory.
 fn drop_specks(
     tree: &PointTree,
-    spacings: &[f32],
+    (spacings, overall): (&[f32], f32),
     is_stray: &mut [u8],
     parents: &mut [u32],
     sizes: &mut [u32],
@@ -123,7 +123,7 @@ fn drop_specks(
         let mut found = [Neighbour::default(); NEIGHBOURS];
         for neighbour in tree.k_nearest(point, &mut found) {
             let other = neighbour.index as usize;
-            let reach = LINK * spacings[index].min(spacings[other]);
+            let reach = LINK * spacings[index].min(spacings[other]).max(overall);
             if neighbour.distance_squared <= reach * reach {
                 join(parents, index as u32, other as u32);
             }

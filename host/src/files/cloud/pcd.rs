@@ -34,7 +34,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
         if let (Some(normals), Some(columns)) = (&mut cloud.normals, columns.normal) {
             // A normal is NaN where the point had too few neighbours.
             let normal = three(columns);
-            normals.push(if normal.iter().any(|x| x.is_nan()) { [0.0; 3] } else { normal });
+            normals.push(if normal.iter().any(|x| x.is_nan()) { [0.0; 3] } else { normal.map(|x| x as f32) });
         }
     }
     let read = (cloud.points.len() + cloud.missing) as u64;
@@ -42,10 +42,11 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
         let reason = format!("the header declares {} points, but there are {read}", meta.num_points);
         return Err(source.truncated(Place::Byte(source.bytes.len()), reason));
     }
+    // The position of the sensor in the frame of the points. The origin is what programs write that do not know it.
     let view = &meta.viewpoint;
-    if [view.tx, view.ty, view.tz, view.qw, view.qx, view.qy, view.qz] != [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
-    {
-        cloud.notes.push("VIEWPOINT was ignored: the points keep their coordinates in the file.".into());
+    let position = [view.tx, view.ty, view.tz];
+    if position != [0.0; 3] {
+        cloud.viewpoints.push(position);
     }
     Ok(cloud)
 }
@@ -137,18 +138,18 @@ impl Columns {
 }
 
 /// The number in a field, whose count has been checked to be one.
-fn value(field: &Field) -> f32 {
+fn value(field: &Field) -> f64 {
     match field {
-        Field::I8(v) => v.first().map(|x| f32::from(*x)),
-        Field::I16(v) => v.first().map(|x| f32::from(*x)),
-        Field::I32(v) => v.first().map(|x| *x as f32),
-        Field::I64(v) => v.first().map(|x| *x as f32),
-        Field::U8(v) => v.first().map(|x| f32::from(*x)),
-        Field::U16(v) => v.first().map(|x| f32::from(*x)),
-        Field::U32(v) => v.first().map(|x| *x as f32),
-        Field::U64(v) => v.first().map(|x| *x as f32),
-        Field::F32(v) => v.first().copied(),
-        Field::F64(v) => v.first().map(|x| *x as f32),
+        Field::I8(v) => v.first().map(|x| f64::from(*x)),
+        Field::I16(v) => v.first().map(|x| f64::from(*x)),
+        Field::I32(v) => v.first().map(|x| f64::from(*x)),
+        Field::I64(v) => v.first().map(|x| *x as f64),
+        Field::U8(v) => v.first().map(|x| f64::from(*x)),
+        Field::U16(v) => v.first().map(|x| f64::from(*x)),
+        Field::U32(v) => v.first().map(|x| f64::from(*x)),
+        Field::U64(v) => v.first().map(|x| *x as f64),
+        Field::F32(v) => v.first().map(|x| f64::from(*x)),
+        Field::F64(v) => v.first().copied(),
     }
-    .unwrap_or(f32::NAN)
+    .unwrap_or(f64::NAN)
 }

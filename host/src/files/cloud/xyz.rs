@@ -10,7 +10,7 @@ use super::RawCloud;
 /// Of `x y z intensity`, `x y z r g b` and `x y z intensity r g b`, which laser scanners write, only x, y and z are
 /// used. `#` and `//` begin a comment. A single number before the points is their count.
 pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
-    let mut rows: Vec<f32> = Vec::new();
+    let mut rows: Vec<f64> = Vec::new();
     let mut width = 0;
     let mut claimed = None;
     for (line, text) in lines(&source.bytes) {
@@ -40,7 +40,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
             rows.push(number(word).ok_or_else(|| malformed(expected(word)))?);
         }
     }
-    let rows: Vec<&[f32]> = rows.chunks_exact(width.max(1)).collect();
+    let rows: Vec<&[f64]> = rows.chunks_exact(width.max(1)).collect();
     if let Some(claimed) = claimed.filter(|claimed| *claimed > rows.len()) {
         return Err(source.truncated(
             Place::Whole,
@@ -52,7 +52,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawCloud, FileError> {
         |from: usize| rows.iter().map(|row| [row[from], row[from + 1], row[from + 2]]).collect::<Vec<_>>();
     let mut cloud = RawCloud { points: three(0), ..RawCloud::default() };
     if width == 6 && !are_colours(&rows) {
-        cloud.normals = Some(three(3));
+        cloud.normals = Some(three(3).into_iter().map(|normal| normal.map(|x| x as f32)).collect());
     } else if width > 3 {
         cloud.notes.push(format!("Columns 4 to {width} look like intensity or colour and were ignored."));
     }
@@ -70,7 +70,7 @@ fn expected(word: &str) -> String {
 }
 
 /// Whether the columns hold whole numbers from 0 to 255 that are not all as small as components of normals.
-fn are_colours(rows: &[&[f32]]) -> bool {
+fn are_colours(rows: &[&[f64]]) -> bool {
     let mut values = rows.iter().flat_map(|row| &row[3..6]);
     values.clone().all(|x| x.fract() == 0.0 && (0.0..=255.0).contains(x)) && values.any(|x| *x > 1.0)
 }

@@ -45,7 +45,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<MeshFile, FileError> {
 
 fn of_ply(ply: Ply) -> RawMesh {
     let mut mesh = RawMesh::default();
-    mesh.vertices = ply.vertices;
+    mesh.vertices = ply.vertices.into_iter().map(|vertex| vertex.map(|x| x as f32)).collect();
     for face in ply.faces {
         mesh.face(face.corners, face.line);
     }
@@ -53,10 +53,10 @@ fn of_ply(ply: Ply) -> RawMesh {
 }
 
 /// The vertices of an OBJ without faces.
-pub(super) fn obj_points(source: &Source<'_>) -> Result<Vec<[f32; 3]>, FileError> {
+pub(super) fn obj_points(source: &Source<'_>) -> Result<Vec<[f64; 3]>, FileError> {
     let raw = obj::read(source)?;
     match raw.face_count() {
-        0 => Ok(raw.vertices),
+        0 => Ok(raw.vertices.into_iter().map(|vertex| vertex.map(f64::from)).collect()),
         _ => Err(FileError::MeshNotCloud { path: source.path.into() }),
     }
 }

@@ -37,7 +37,7 @@ fn statement(mesh: &mut RawMesh, line: &str, line_number: usize) -> Result<(), S
                 (Some(word), None) => number(word).ok_or("the weight is not a number")?,
                 _ => 1.0,
             };
-            mesh.vertices.push(if weight == 1.0 { vertex } else { vertex.map(|x| x / weight) });
+            mesh.vertices.push(vertex.map(|x| (x / weight) as f32));
         }
         Some("f") => {
             let corners: Vec<i64> =

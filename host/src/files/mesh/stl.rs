@@ -70,7 +70,9 @@ fn text(source: &Source<'_>) -> Result<RawMesh, FileError> {
                 in_facet = true;
                 facet_start = mesh.vertices.len();
             }
-            "vertex" if in_facet => mesh.vertices.push(three(&mut words).map_err(malformed)?),
+            "vertex" if in_facet => {
+                mesh.vertices.push(three(&mut words).map_err(malformed)?.map(|x| x as f32));
+            }
             "endfacet" if in_facet => {
                 in_facet = false;
                 let corners = mesh.vertices.len() - facet_start;
