@@ -152,7 +152,7 @@ fn group(
     for (index, normal) in normals.iter().enumerate() {
         let key = place(index);
         // The hash scaled to the length of the table.
-        let mut slot = (u64::from(hash(key)) * table.len() as u64 >> 32) as usize;
+        let mut slot = ((u64::from(hash(key)) * table.len() as u64) >> 32) as usize;
         let group = loop {
             let Some(group) = (table[slot] as usize).checked_sub(1) else {
                 count += 1;

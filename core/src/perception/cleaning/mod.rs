@@ -84,3 +84,6 @@ pub(crate) fn clean<'s>(
     slots.rename(kept.names);
     Ok(Cleaned { normals, spacings: &spacings[..count], is_on_plane, counts })
 }
+
+#[cfg(test)]
+mod tests;

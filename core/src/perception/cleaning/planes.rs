@@ -7,9 +7,9 @@ use nalgebra::Matrix3;
 
 // Physics: what a large plane is.
 
-/// Edge of the smallest square that makes a plane large, in cells. With [`CELL`] it is 15 cm: wider than the boards and
-/// plates that hooks are mounted on are high, and than what objects are hung over.
-const SQUARE: usize = 6;
+/// Edge of the smallest square that makes a plane large, in cells of which the outer ones may be cut. With [`CELL`] it is
+/// between 12.5 and 17.5 cm, more than what objects are hung over.
+const SQUARE: usize = 7;
 /// Edge of a cell of the grid on a plane, metres. The points of a surface are closer.
 const CELL: f32 = 0.025;
 /// Least share of the cells of the square that have points.

@@ -1,0 +1,141 @@
+//! What is kept of made clouds whose strays, duplicates and planes are known.
+
+use super::*;
+use crate::memory::model_bytes;
+use crate::random::Random;
+use std::vec::Vec;
+
+/// Cleans a cloud and returns the indices of the points that are left, those of them on planes, and the counts.
+fn cleaned(points: &[Point], normals: &[Vector]) -> (Vec<u32>, Vec<u32>, CleaningCounts) {
+    let n = points.len();
+    let needed = model_bytes(
+        crate::geometry::PointTree::bytes(n)
+            + scratch_bytes(n)
+            + crate::geometry::PointTree::scratch_bytes(n),
+    );
+    let mut memory = vec![0; needed];
+    let mut arena = Arena::new(&mut memory, needed).unwrap();
+    let mut slots = PointTreeSlots::new(n, &mut arena).unwrap();
+    let mut scratch = arena.scratch();
+    let cleaned = clean(points, normals, false, &mut slots, &mut scratch).unwrap();
+    let order = slots.tree().order().to_vec();
+    let on_planes = order.iter().zip(cleaned.is_on_plane.iter()).filter(|(_, flag)| **flag > 0);
+    (order.clone(), on_planes.map(|(index, _)| *index).collect(), cleaned.counts)
+}
+
+/// `count` points at random on a bar along x, 10 cm long and 8 mm thick, around `centre`.
+fn bar(count: usize, centre: Point, random: &mut Random) -> Vec<Point> {
+    (0..count)
+        .map(|_| {
+            let (s, c) = (std::f32::consts::TAU * random.next_f32()).sin_cos();
+            centre + Vector::new(0.1 * random.next_f32() - 0.05, 0.004 * s, 0.004 * c)
+        })
+        .collect()
+}
+
+/// `count` points at random on a horizontal square of this edge around `centre`, with noise of this size.
+fn square(count: usize, edge: f32, centre: Point, noise: f32, random: &mut Random) -> Vec<Point> {
+    (0..count)
+        .map(|_| {
+            let mut next = |size: f32| size * (random.next_f32() - 0.5);
+            centre + Vector::new(next(edge), next(edge), next(2.0 * noise))
+        })
+        .collect()
+}
+
+fn unknown(points: &[Point]) -> Vec<Vector> {
+    vec![Vector::zeros(); points.len()]
+}
+
+#[test]
+fn points_in_the_air_are_dropped_and_no_others() {
+    for seed in 0..20 {
+        let mut random = Random::new(seed);
+        let mut points = bar(3000, Point::origin(), &mut random);
+        let surface = points.len() as u32;
+        // At least 2 cm from the axis.
+        while points.len() < 3030 {
+            let mut next = || 0.3 * (random.next_f32() - 0.5);
+            let stray = Point::new(next(), next(), next());
+            if stray.y.hypot(stray.z) > 0.02 {
+                points.push(stray);
+            }
+        }
+        let (kept, _, counts) = cleaned(&points, &unknown(&points));
+        let strays = kept.iter().filter(|index| **index >= surface).count();
+        assert!(strays == 0, "{strays} strays are left with seed {seed}");
+        assert!(counts.strays <= 32 && counts.on_planes == 0, "{counts:?} with seed {seed}");
+    }
+}
+
+#[test]
+fn specks_are_dropped_and_a_sparse_sheet_is_not() {
+    let mut random = Random::new(1);
+    let mut points = bar(3000, Point::origin(), &mut random);
+    let sheet = points.len() as u32;
+    // 12 mm between points beside 1 mm.
+    points.extend(square(100, 0.12, Point::new(0.0, 0.0, -0.05), 0.0, &mut random));
+    let specks = points.len() as u32;
+    for k in 0..10 {
+        let centre = Point::new(0.03 * k as f32 - 0.15, 0.1, 0.05);
+        points.extend(square(5, 0.001, centre, 0.0005, &mut random));
+    }
+    let (kept, ..) = cleaned(&points, &unknown(&points));
+    assert_eq!(kept.iter().filter(|index| **index >= specks).count(), 0);
+    let of_sheet = kept.iter().filter(|index| (sheet..specks).contains(*index)).count();
+    assert!(of_sheet >= 95, "{of_sheet} of 100");
+}
+
+#[test]
+fn duplicates_are_merged_and_two_sides_are_not() {
+    let mut random = Random::new(2);
+    let once = bar(500, Point::origin(), &mut random);
+    let points: Vec<Point> = (0..4).flat_map(|_| once.iter().copied()).collect();
+    let (kept, _, counts) = cleaned(&points, &unknown(&points));
+    assert_eq!(kept.len() + counts.merged + counts.strays, 2000);
+    assert!((450..=500).contains(&kept.len()) && kept.iter().all(|index| *index < 500), "{counts:?}");
+
+    // Two sides of a foil at the same places.
+    let foil = square(500, 0.1, Point::origin(), 0.0, &mut random);
+    let both: Vec<Point> = foil.iter().chain(&foil).copied().collect();
+    let normals: Vec<Vector> = (0..1000).map(|i| if i < 500 { Vector::z() } else { -Vector::z() }).collect();
+    assert_eq!(cleaned(&both, &normals).2.merged, 0);
+}
+
+#[test]
+fn density_does_not_decide_how_many_are_left() {
+    let mut random = Random::new(3);
+    let [few, many] = [20_000, 80_000].map(|count| {
+        let points = bar(count, Point::origin(), &mut random);
+        cleaned(&points, &unknown(&points)).0.len() as f32
+    });
+    assert!((many / few - 1.0).abs() < 0.15 && few < 6000.0, "{few} and {many}");
+}
+
+#[test]
+fn large_planes_are_found_to_their_rims_and_small_ones_are_not() {
+    for (seed, edge, noise) in [(4, 1.0, 0.0), (5, 0.6, 0.002), (6, 0.3, 0.001)] {
+        let mut random = Random::new(seed);
+        let mut points = bar(3000, Point::new(0.0, 0.0, 0.1), &mut random);
+        let table = points.len() as u32;
+        let count = (edge * edge * 12_000.0) as usize;
+        points.extend(square(count, edge, Point::origin(), noise, &mut random));
+        let (kept, on_planes, counts) = cleaned(&points, &unknown(&points));
+        let of_table = kept.iter().filter(|index| **index >= table).count();
+        assert!(on_planes.iter().all(|index| *index >= table), "a part of the bar with seed {seed}");
+        assert!(counts.on_planes * 100 >= of_table * 98, "{counts:?} of {of_table} with seed {seed}");
+    }
+    // A board of 12 cm is one that hooks are mounted on.
+    let mut random = Random::new(7);
+    let board = square(4000, 0.12, Point::origin(), 0.0, &mut random);
+    assert_eq!(cleaned(&board, &unknown(&board)).2.on_planes, 0);
+}
+
+#[test]
+fn something_is_left_of_any_cloud() {
+    for points in
+        [vec![Point::origin()], vec![Point::origin(); 7], vec![Point::origin(), Point::new(1.0, 0.0, 0.0)]]
+    {
+        assert!(!cleaned(&points, &unknown(&points)).0.is_empty());
+    }
+}
