@@ -16,8 +16,9 @@ struct Arguments {
     /// Comma-separated profiles.
     #[arg(long, value_delimiter = ',', default_value = "paper,default")]
     profile: Vec<Profile>,
-    /// Comma-separated scans on which to predict, instead of on the exact shapes: numbers of depth images of the object and
-    /// of the supporter, such as 24+3, with an s for sensible single images, such as 1+1s. The tables go to the console.
+    /// Comma-separated scans on which to predict, instead of on the exact shapes: numbers of depth images of the object
+    /// and of the supporter, such as 24+3, with an s for sensible single images, such as 1+1s. With 0 images, the exact
+    /// shape is given. The tables go to the console.
     #[arg(long, value_delimiter = ',')]
     scan: Vec<Spec>,
     /// Number of generated pairs that fit. Two thirds as many that cannot hang, and a fifteenth as many on several

@@ -11,7 +11,8 @@ use std::str::FromStr;
 /// Distance around the bars of a supporter that its images show at least, m: most of an object that hangs there.
 const AROUND_BARS: f32 = 0.08;
 
-/// Numbers of images of the object and of the supporter. Its text is `24+3`, or `1+1s` for sensible single images.
+/// Numbers of images of the object and of the supporter. Its text is `24+3`, or `1+1s` for sensible single images. Of
+/// what has no images, as in `24+0`, the exact shape is given, which shows whose scan a failure comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spec {
     /// Number of images of the object.
@@ -36,7 +37,7 @@ impl FromStr for Spec {
         let counts = text.strip_suffix('s').unwrap_or(text);
         let counts = counts.split_once('+').map(|(object, supporter)| [object.parse(), supporter.parse()]);
         match counts {
-            Some([Ok(object @ 1..), Ok(supporter @ 1..)]) => {
+            Some([Ok(object), Ok(supporter)]) => {
                 Ok(Self { object, supporter, is_sensible: text.ends_with('s') })
             }
             _ => {
@@ -89,10 +90,10 @@ mod tests {
 
     #[test]
     fn specs_have_one_text_each() {
-        for text in ["24+3", "1+1s"] {
+        for text in ["24+3", "1+1s", "24+0"] {
             assert_eq!(text.parse::<Spec>().unwrap().to_string(), text);
         }
-        for text in ["", "24", "0+1", "1+x", "1+1ss", "s"] {
+        for text in ["", "24", "-1+1", "1+x", "1+1ss", "s"] {
             assert!(text.parse::<Spec>().is_err(), "{text}");
         }
     }

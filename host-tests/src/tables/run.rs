@@ -52,8 +52,8 @@ pub struct Options<'a> {
     pub gallery: Option<&'a Path>,
 }
 
-/// Predicts and judges every case under every profile on every scan. Returns all rows, including those of the record. `tell` is
-/// called with the number of finished rows and the total.
+/// Predicts and judges every case under every profile on every scan. Returns all rows, including those of the record.
+/// `tell` is called with the number of finished rows and the total.
 pub fn run(
     cases: &[Case],
     options: &Options,
@@ -181,7 +181,8 @@ fn judge(case: &Case, profile: &str, params: &Params, scan: &Option<Spec>, optio
         let outcome = Outcome { said: pose.rest.as_ref().map(Into::into), ..outcome };
         if let Some(folder) = options.gallery.filter(|_| outcomes.is_empty()) {
             let word = outcome.failure().map_or("success", Failure::name);
-            let path = folder.join(format!("{profile} {word} {}.png", case.name));
+            let method = scan.map_or_else(|| profile.into(), |scan| format!("{profile} {scan}"));
+            let path = folder.join(format!("{method} {word} {}.png", case.name));
             if let Err(error) = gallery::write(&path, &case.object, &case.supporter, &pose.pose, &rest) {
                 eprintln!("{}: {error}", path.display());
             }

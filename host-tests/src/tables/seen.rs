@@ -4,6 +4,7 @@ use super::case::Case;
 use crate::scan::{SeenCloud, Shot, Spec, Surface, cloud, fuse};
 use crate::shapes::Random;
 use hangpose::geometry::{Cloud, CloudError, Mesh, MeshError};
+use hangpose::perception::depth::DepthImage;
 
 /// The object's mesh and the supporter's cloud.
 pub(super) struct Seen {
@@ -27,11 +28,16 @@ impl Seen {
     /// A scan. Its random numbers depend on nothing but the pair and the numbers of images.
     pub(super) fn scanned(case: &Case, spec: &Spec) -> Self {
         let mut random = Random::named(&format!("{} {spec}", case.name), case.seed);
+        let mut seen = Self::exactly(case);
         let object = spec.shoot_object(&case.object, &case.openings, &mut random);
         let supporter = spec.shoot_supporter(&case.supporter, &case.bars, &mut random);
-        let [object, supporter] =
-            [&object, &supporter].map(|shots| shots.iter().filter_map(Shot::image).collect::<Vec<_>>());
-        Self { surface: fuse(&object), cloud: cloud(&supporter) }
+        if spec.object > 0 {
+            seen.surface = fuse(&images(&object));
+        }
+        if spec.supporter > 0 {
+            seen.cloud = cloud(&images(&supporter));
+        }
+        seen
     }
 
     /// The mesh as the core takes it.
@@ -44,4 +50,8 @@ impl Seen {
         let cloud = Cloud::new(&self.cloud.points, self.cloud.normals.as_deref())?;
         self.cloud.viewpoint.map_or(Ok(cloud), |viewpoint| cloud.seen_from(viewpoint))
     }
+}
+
+fn images(shots: &[Shot]) -> Vec<DepthImage<'_>> {
+    shots.iter().filter_map(Shot::image).collect()
 }
