@@ -6,7 +6,7 @@ use hangpose::perception::depth::DepthImage;
 
 /// Smallest distance between nodes, m.
 const SPACING: f32 = 0.0015;
-/// Largest number of nodes, 64 MB. The spacing of large objects grows to keep it.
+/// Largest number of nodes, 32 MB. The spacing of large objects grows to keep it.
 const MAX_NODES: f32 = 8e6;
 /// Distance from the surface up to which an image is used, in spacings.
 const TRUNCATION: f32 = 4.0;
