@@ -130,3 +130,44 @@ impl Near {
         around.filter_map(|cell| self.0.get(&cell)).flatten().any(|other| (other - point).norm() < UNSEEN)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scan::{SeenCloud, Surface};
+
+    /// A cube of 10 cm about the origin; with or without its face towards -x.
+    fn cube(has_back: bool) -> Solid {
+        let vertices = (0..8).map(|k| [k & 1, k >> 1 & 1, k >> 2 & 1].map(|bit| 0.1 * bit as f32 - 0.05));
+        let faces = [[1, 3, 7, 5], [2, 6, 7, 3], [0, 1, 5, 4], [4, 5, 7, 6], [0, 2, 3, 1], [0, 4, 6, 2]];
+        let shown = if has_back { &faces[..] } else { &faces[..5] };
+        let triangles = shown.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        Solid { vertices: vertices.collect(), triangles, ..Solid::default() }
+    }
+
+    #[test]
+    fn a_collision_on_a_face_that_was_not_scanned_is_unseen() {
+        let shape = cube(true);
+        let cloud = sample_supporter(&shape.mesh(), 5000, 1);
+        let cloud = SeenCloud { points: cloud.points, normals: None, viewpoint: None };
+        let scan = |has_back| {
+            let Solid { vertices, triangles, .. } = cube(has_back);
+            Seen { surface: Surface { vertices, triangles }, cloud: cloud.clone() }
+        };
+        let outcome = Outcome::unclear(0.001);
+        // The object's face towards +x or -x is 1 mm within the supporter.
+        for (side, has_back, loss) in [
+            (-1.0, true, Loss::Inexact),
+            (-1.0, false, Loss::Inexact),
+            (1.0, true, Loss::Inexact),
+            (1.0, false, Loss::Unseen),
+        ] {
+            let pose = Pose::translation(side * 0.099, 0.0, 0.0);
+            assert_eq!(
+                Loss::of(&outcome, &pose, &shape, &shape, &scan(has_back)),
+                Some(loss),
+                "{side} {has_back}"
+            );
+        }
+    }
+}

@@ -7,6 +7,7 @@ use hangpose::geometry::{Cloud, CloudError, Mesh, MeshError};
 use hangpose::perception::depth::DepthImage;
 
 /// The object's mesh and the supporter's cloud.
+#[derive(Debug, PartialEq)]
 pub(super) struct Seen {
     /// The object's mesh.
     pub(super) surface: Surface,
@@ -54,4 +55,37 @@ impl Seen {
 
 fn images(shots: &[Shot]) -> Vec<DepthImage<'_>> {
     shots.iter().filter_map(Shot::image).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::case::made;
+    use super::*;
+
+    #[test]
+    fn scans_repeat_and_stay_near_the_true_shapes() {
+        let case = &made(1, 9)[0];
+        let spec: Spec = "2+1s".parse().unwrap();
+        let seen = Seen::scanned(case, &spec);
+        assert_eq!(seen, Seen::scanned(case, &spec));
+        assert!(seen.mesh().is_ok() && seen.cloud().unwrap().viewpoint().is_some());
+        let of_object = Seen::scanned(case, &"2+0".parse().unwrap());
+        assert_eq!(of_object.cloud, Seen::exactly(case).cloud);
+        assert_ne!(of_object.surface, Seen::exactly(case).surface);
+        // Flying pixels of an image end 3 cm behind it.
+        let box_of = |points: &[[f32; 3]]| {
+            let all = |pick: fn(f32, f32) -> f32, start| {
+                points.iter().fold([start; 3], |a, p| std::array::from_fn(|i| pick(a[i], p[i])))
+            };
+            [all(f32::min, f32::INFINITY), all(f32::max, f32::NEG_INFINITY)]
+        };
+        let [low, high] = box_of(&case.object.vertices);
+        let [seen_low, seen_high] = box_of(&seen.surface.vertices);
+        for i in 0..3 {
+            assert!(
+                seen_low[i] > low[i] - 0.035 && seen_high[i] < high[i] + 0.035,
+                "{seen_low:?} {seen_high:?}"
+            );
+        }
+    }
 }
