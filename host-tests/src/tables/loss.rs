@@ -2,6 +2,7 @@
 
 use super::row::{Failure, Outcome};
 use super::seen::Seen;
+use crate::judge::Limits;
 use crate::solid::Solid;
 use crate::winding::Winding;
 use hangpose::geometry::Pose;
@@ -34,11 +35,13 @@ pub enum Loss {
     Inexact,
     /// The object falls.
     Falls,
+    /// The object has not fallen, but swings or is off the supporter when the time is up.
+    Moves,
 }
 
 impl Loss {
     /// All causes.
-    pub const ALL: [Self; 4] = [Self::NotFound, Self::Unseen, Self::Inexact, Self::Falls];
+    pub const ALL: [Self; 5] = [Self::NotFound, Self::Unseen, Self::Inexact, Self::Falls, Self::Moves];
 
     /// Name in the tables.
     pub fn name(self) -> &'static str {
@@ -47,6 +50,7 @@ impl Loss {
             Self::Unseen => "collides, unseen",
             Self::Inexact => "collides, seen",
             Self::Falls => "falls",
+            Self::Moves => "still moves",
         }
     }
 
@@ -63,6 +67,7 @@ impl Loss {
                 Some(Self::Unseen)
             }
             Failure::Penetration | Failure::Wedged => Some(Self::Inexact),
+            _ if f64::from(outcome.sank) < Limits::DEFINITION.sinking => Some(Self::Moves),
             _ => Some(Self::Falls),
         }
     }
