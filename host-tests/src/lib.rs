@@ -3,6 +3,7 @@
 
 pub mod gallery;
 pub mod judge;
+pub mod scan;
 pub mod shapes;
 mod shell;
 pub mod solid;

@@ -83,6 +83,7 @@ fn a_run_that_was_killed_resumes_with_the_same_rows() {
     let profiles = [("paper".to_string(), Params::paper())];
     let options = Options {
         profiles: &profiles,
+        scans: &[None],
         engine: Engine::Ode,
         threads: 2,
         record: &record,

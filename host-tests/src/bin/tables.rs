@@ -3,9 +3,10 @@
 use anyhow::{Context, Result};
 use clap::{Parser, ValueEnum};
 use hangpose::{Candidates, Params};
+use host_tests::scan::Spec;
 use host_tests::shapes::OBJECTS;
 use host_tests::tables::run::{Engine, Options, run};
-use host_tests::tables::{case, real, report};
+use host_tests::tables::{case, real, report, scans};
 use indicatif::ProgressBar;
 use std::path::PathBuf;
 
@@ -15,6 +16,11 @@ struct Arguments {
     /// Comma-separated profiles.
     #[arg(long, value_delimiter = ',', default_value = "paper,default")]
     profile: Vec<Profile>,
+    /// Comma-separated scans on which to predict, instead of on the exact shapes: numbers of depth images of the object
+    /// and of the supporter, such as 24+3, with an s for sensible single images, such as 1+1s. With 0 images, the exact
+    /// shape is given. The tables go to the console.
+    #[arg(long, value_delimiter = ',')]
+    scan: Vec<Spec>,
     /// Number of generated pairs that fit. Two thirds as many that cannot hang, and a fifteenth as many on several
     /// contacts, are added.
     #[arg(long, default_value_t = 600)]
@@ -114,10 +120,16 @@ fn main() -> Result<()> {
             (name, profile.params())
         })
         .collect();
+    let scans_or_exact: Vec<Option<Spec>> = if arguments.scan.is_empty() {
+        vec![None]
+    } else {
+        arguments.scan.iter().copied().map(Some).collect()
+    };
     let work = |mut cases: Vec<case::Case>, engine| {
         cases.retain(|case| arguments.only.as_ref().is_none_or(|kind| case.object_kind == *kind));
         let options = Options {
             profiles: &profiles,
+            scans: &scans_or_exact,
             engine,
             threads: arguments.threads,
             record: &arguments.json,
@@ -142,6 +154,10 @@ fn main() -> Result<()> {
     };
     let titled = [("Generated pairs", &made), ("Several contacts", &several), ("Real meshes", &real)];
     let titled = titled.into_iter().filter(|(_, rows)| !rows.is_empty());
+    if !arguments.scan.is_empty() {
+        titled.for_each(|(title, rows)| print!("{title}:\n\n{}", scans::tables(rows)));
+        return Ok(());
+    }
     if arguments.summary {
         titled.for_each(|(title, rows)| print!("{title}:\n\n{}", report::summary(rows)));
         return Ok(());

@@ -36,6 +36,12 @@ impl Random {
         (self.next_u64() % count as u64) as usize
     }
 
+    /// Normally distributed with mean 0 and standard deviation 1 (Box and Muller 1958).
+    pub fn gaussian(&mut self) -> f64 {
+        let radius = (-2.0 * libm::log(1.0 - self.range(0.0, 1.0))).sqrt();
+        radius * libm::cos(self.range(0.0, std::f64::consts::TAU))
+    }
+
     /// True with this probability.
     pub fn chance(&mut self, probability: f64) -> bool {
         self.range(0.0, 1.0) < probability

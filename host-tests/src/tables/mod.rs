@@ -2,9 +2,12 @@
 
 mod calibration;
 pub mod case;
+mod loss;
 pub mod proportion;
 pub mod real;
 pub mod report;
 pub mod row;
 pub mod run;
+pub mod scans;
 mod search;
+mod seen;

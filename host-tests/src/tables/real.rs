@@ -57,6 +57,8 @@ pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
                 fit,
                 object: object.solid.clone(),
                 supporter: supporter.solid.clone(),
+                openings: Vec::new(),
+                bars: Vec::new(),
             }
         }));
     }

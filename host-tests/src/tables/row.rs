@@ -1,5 +1,6 @@
 //! Outcome of one pair under one profile, which is a line of the record that a run writes and resumes from.
 
+use super::loss::Loss;
 use crate::judge::Verdict;
 use hangpose::hanging::Rest;
 use serde::{Deserialize, Serialize};
@@ -11,6 +12,9 @@ pub struct Row {
     pub pair: String,
     /// Name of the profile, such as `paper` or `default`.
     pub profile: String,
+    /// Numbers of images of the object and of the supporter, such as `24+3`; `None` with the exact shapes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scan: Option<String>,
     /// Kind of the object.
     pub object: String,
     /// Kind of the supporter.
@@ -28,6 +32,9 @@ pub struct Row {
     pub outcomes: Vec<Outcome>,
     /// Outcome of the best pose in the second engine, if there is one.
     pub second: Option<Outcome>,
+    /// Cause for which the best pose of a scan fails on the true shapes, if the pair fits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loss: Option<Loss>,
 }
 
 /// Outcome of one pose.

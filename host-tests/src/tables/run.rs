@@ -1,10 +1,13 @@
 //! Evaluates the cases on several threads and writes each row when it is complete.
 
 use super::case::{Case, Fit};
+use super::loss::Loss;
 use super::row::{Failure, Outcome, Row};
 use super::search::finds_a_pose;
+use super::seen::Seen;
 use crate::gallery;
 use crate::judge::{Bullet, Judge, Limits, Ode, Scene, World};
+use crate::scan::Spec;
 use hangpose::hanging::HangingPose;
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses};
 use std::collections::{HashMap, HashSet};
@@ -16,6 +19,9 @@ use std::time::Instant;
 
 /// Largest number of poses per pair that are predicted and judged.
 pub const TOP: usize = 10;
+
+/// Rejection of a pair of which the images show no surface of the object or of the supporter.
+const NOTHING_SEEN: &str = "NothingSeen";
 
 /// Engine that judges.
 #[derive(Clone, Copy, Debug, PartialEq, clap::ValueEnum)]
@@ -32,6 +38,8 @@ pub enum Engine {
 pub struct Options<'a> {
     /// Names and constants of the profiles.
     pub profiles: &'a [(String, Params)],
+    /// Scans on which every profile predicts; `None` is the exact shapes.
+    pub scans: &'a [Option<Spec>],
     /// Engine that judges.
     pub engine: Engine,
     /// Number of threads, each with one pair at a time.
@@ -44,16 +52,17 @@ pub struct Options<'a> {
     pub gallery: Option<&'a Path>,
 }
 
-/// Predicts and judges every case under every profile. Returns all rows, including those of the record. `tell` is
-/// called with the number of finished rows and the total.
+/// Predicts and judges every case under every profile on every scan. Returns all rows, including those of the record.
+/// `tell` is called with the number of finished rows and the total.
 pub fn run(
     cases: &[Case],
     options: &Options,
     tell: impl Fn(usize, usize) + Sync,
 ) -> std::io::Result<Vec<Row>> {
-    let Options { profiles, record, .. } = *options;
+    let Options { profiles, scans, record, .. } = *options;
     let mut rows = read(record)?;
-    let done: HashSet<(String, String)> = rows.iter().map(|r| (r.pair.clone(), r.profile.clone())).collect();
+    let key = |r: &Row| (r.pair.clone(), r.profile.clone(), r.scan.clone());
+    let done: HashSet<_> = rows.iter().map(key).collect();
     let file = Mutex::new(std::fs::File::options().create(true).append(true).open(record)?);
     // Each pair is searched only once for all profiles.
     let mut searched: HashMap<&str, OnceLock<bool>> =
@@ -61,16 +70,21 @@ pub fn run(
     for row in &rows {
         searched.insert(&row.pair, row.fits.into());
     }
-    let jobs: Vec<(&Case, &(String, Params))> = cases
+    let text = |scan: &Option<Spec>| scan.as_ref().map(Spec::to_string);
+    let methods: Vec<(&(String, Params), &Option<Spec>)> =
+        scans.iter().flat_map(|scan| profiles.iter().map(move |profile| (profile, scan))).collect();
+    let jobs: Vec<(&Case, &(String, Params), &Option<Spec>)> = cases
         .iter()
-        .flat_map(|case| profiles.iter().map(move |profile| (case, profile)))
-        .filter(|(case, profile)| !done.contains(&(case.name.clone(), profile.0.clone())))
+        .flat_map(|case| methods.iter().map(move |&(profile, scan)| (case, profile, scan)))
+        .filter(|(case, profile, scan)| !done.contains(&(case.name.clone(), profile.0.clone(), text(scan))))
         .collect();
     let (next, finished, new) = (AtomicUsize::new(0), AtomicUsize::new(0), Mutex::new(Vec::new()));
     std::thread::scope(|scope| {
         for _ in 0..options.threads {
             scope.spawn(|| {
-                while let Some((case, (profile, params))) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
+                while let Some((case, (profile, params), scan)) =
+                    jobs.get(next.fetch_add(1, Ordering::Relaxed))
+                {
                     let fits = match case.fit {
                         Fit::Yes => true,
                         Fit::No => false,
@@ -78,7 +92,7 @@ pub fn run(
                             .get_or_init(|| finds_a_pose(&case.object, &case.supporter, case.seed)),
                     };
                     let doubtful = case.fit == Fit::Unknown && !fits;
-                    let row = Row { fits, doubtful, ..judge(case, profile, params, options) };
+                    let row = Row { fits, doubtful, ..judge(case, profile, params, scan, options) };
                     let line = serde_json::to_string(&row).expect("a row has no maps") + "\n";
                     let written = file.lock().expect("no thread panics").write_all(line.as_bytes());
                     if let Err(error) = written {
@@ -92,7 +106,11 @@ pub fn run(
     });
     rows.extend(new.into_inner().expect("no thread panics"));
     let names: HashSet<&str> = cases.iter().map(|case| case.name.as_str()).collect();
-    rows.retain(|row| names.contains(row.pair.as_str()) && profiles.iter().any(|p| p.0 == row.profile));
+    rows.retain(|row| {
+        names.contains(row.pair.as_str())
+            && profiles.iter().any(|p| p.0 == row.profile)
+            && scans.iter().any(|scan| text(scan) == row.scan)
+    });
     rows.sort_by(|a, b| (&a.profile, &a.pair).cmp(&(&b.profile, &b.pair)));
     Ok(rows)
 }
@@ -110,15 +128,28 @@ fn read(record: &Path) -> std::io::Result<Vec<Row>> {
     }
 }
 
-fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row {
-    let cloud = case.supporter_cloud();
+fn judge(case: &Case, profile: &str, params: &Params, scan: &Option<Spec>, options: &Options) -> Row {
+    let seen = scan.as_ref().map_or_else(|| Seen::exactly(case), |scan| Seen::scanned(case, scan));
+    let row = Row {
+        pair: case.name.clone(),
+        profile: profile.into(),
+        scan: scan.as_ref().map(Spec::to_string),
+        object: case.object_kind.clone(),
+        supporter: case.supporter_kind.clone(),
+        fits: case.fit == Fit::Yes,
+        doubtful: false,
+        rejection: Some(NOTHING_SEEN.into()),
+        seconds: 0.0,
+        outcomes: Vec::new(),
+        second: None,
+        loss: (scan.is_some() && case.fit != Fit::No).then_some(Loss::NotFound),
+    };
+    let (Ok(mesh), Ok(cloud)) = (seen.mesh(), seen.cloud()) else { return row };
     let params = Params { seed: case.seed, ..params.clone() };
-    let mesh = case.object.mesh();
     let (mut object_memory, mut supporter_memory) = (Vec::new(), Vec::new());
     let monitor = Monitor::new();
     let start = Instant::now();
     let object = analyze_object(&mesh, &params, &mut object_memory, &monitor).expect("memory is enough");
-    let cloud = cloud.cloud().expect("samples are valid");
     let supporter =
         analyze_supporter(&cloud, &params, &mut supporter_memory, &monitor).expect("memory is enough");
     let mut poses = [HangingPose::default(); TOP];
@@ -144,15 +175,20 @@ fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row 
     let first: &dyn Judge = if options.engine == Engine::Ode { &ode } else { &bullet };
     let mut world = first.world(&scene);
     let mut outcomes: Vec<Outcome> = Vec::new();
+    let mut loss = row.loss;
     for pose in poses {
         let (outcome, rest) = drop(&mut world, pose);
         let outcome = Outcome { said: pose.rest.as_ref().map(Into::into), ..outcome };
         if let Some(folder) = options.gallery.filter(|_| outcomes.is_empty()) {
             let word = outcome.failure().map_or("success", Failure::name);
-            let path = folder.join(format!("{profile} {word} {}.png", case.name));
+            let method = scan.map_or_else(|| profile.into(), |scan| format!("{profile} {scan}"));
+            let path = folder.join(format!("{method} {word} {}.png", case.name));
             if let Err(error) = gallery::write(&path, &case.object, &case.supporter, &pose.pose, &rest) {
                 eprintln!("{}: {error}", path.display());
             }
+        }
+        if scan.is_some() && outcomes.is_empty() {
+            loss = Loss::of(&outcome, &rest, &case.object, &case.supporter, &seen);
         }
         outcomes.push(outcome);
         if outcome.success() && !options.all {
@@ -163,16 +199,6 @@ fn judge(case: &Case, profile: &str, params: &Params, options: &Options) -> Row 
         .first()
         .filter(|_| options.engine == Engine::Both)
         .map(|pose| drop(&mut ode.world(&scene), pose).0);
-    Row {
-        pair: case.name.clone(),
-        profile: profile.into(),
-        object: case.object_kind.clone(),
-        supporter: case.supporter_kind.clone(),
-        fits: case.fit == Fit::Yes,
-        doubtful: false,
-        rejection: prediction.rejection.map(|rejection| format!("{:?}", rejection.stage)),
-        seconds,
-        outcomes,
-        second,
-    }
+    let rejection = prediction.rejection.map(|rejection| format!("{:?}", rejection.stage));
+    Row { rejection, seconds, outcomes, second, loss, ..row }
 }
