@@ -22,8 +22,8 @@ pub struct SeenCloud {
     pub points: Vec<[f32; 3]>,
     /// Normals that face the cameras which saw the points; none with a single image, whose camera all normals face.
     pub normals: Option<Vec<[f32; 3]>>,
-    /// Position of the camera of a single image, m.
-    pub viewpoint: Option<[f32; 3]>,
+    /// Positions of the cameras, m.
+    pub viewpoints: Vec<[f32; 3]>,
 }
 
 /// The points of all images, one for each voxel of 2 mm: the mean of its pixels.
@@ -45,10 +45,8 @@ pub fn cloud(images: &[DepthImage]) -> SeenCloud {
         .into_values()
         .map(|(point, normal, count)| (to_array(point / count), to_array(normal)))
         .unzip();
-    match images {
-        [one] => SeenCloud { points, normals: None, viewpoint: Some(to_array(one.viewpoint().coords)) },
-        _ => SeenCloud { points, normals: Some(normals), viewpoint: None },
-    }
+    let viewpoints = images.iter().map(|image| to_array(image.viewpoint().coords)).collect();
+    SeenCloud { points, normals: (images.len() > 1).then_some(normals), viewpoints }
 }
 
 fn to_array(vector: Vector) -> [f32; 3] {

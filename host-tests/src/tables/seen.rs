@@ -22,7 +22,7 @@ impl Seen {
         let (vertices, triangles) = (case.object.vertices.clone(), case.object.triangles.clone());
         Self {
             surface: Surface { vertices, triangles },
-            cloud: SeenCloud { points: cloud.points, normals: cloud.normals, viewpoint: None },
+            cloud: SeenCloud { points: cloud.points, normals: cloud.normals, viewpoints: Vec::new() },
         }
     }
 
@@ -48,8 +48,7 @@ impl Seen {
 
     /// The cloud as the core takes it.
     pub(super) fn cloud(&self) -> Result<Cloud<'_>, CloudError> {
-        let cloud = Cloud::new(&self.cloud.points, self.cloud.normals.as_deref())?;
-        self.cloud.viewpoint.map_or(Ok(cloud), |viewpoint| cloud.seen_from(viewpoint))
+        Cloud::new(&self.cloud.points, self.cloud.normals.as_deref())?.seen_from(&self.cloud.viewpoints)
     }
 }
 
@@ -69,7 +68,7 @@ mod tests {
         let spec: Spec = "2+1s".parse().unwrap();
         let seen = Seen::scanned(case, &spec);
         assert_eq!(seen, Seen::scanned(case, &spec));
-        assert!(seen.mesh().is_ok() && seen.cloud().unwrap().viewpoint().is_some());
+        assert!(seen.mesh().is_ok() && seen.cloud().unwrap().viewpoints().len() == 1);
         let of_object = Seen::scanned(case, &"2+0".parse().unwrap());
         assert_eq!(of_object.cloud, Seen::exactly(case).cloud);
         assert_ne!(of_object.surface, Seen::exactly(case).surface);
