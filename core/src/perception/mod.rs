@@ -1,6 +1,10 @@
 //! From what a sensor or a file gives to what the method works on.
 
 pub mod depth;
+pub mod isosurface;
 pub mod normals;
 mod orientation;
 pub mod sampling;
+#[cfg(test)]
+mod test_views;
+pub mod volume;
