@@ -1,9 +1,11 @@
 //! From what a sensor or a file gives to what the method works on.
 
 pub mod depth;
+pub mod depth_points;
 pub mod isosurface;
 pub mod normals;
 mod orientation;
+pub mod plane;
 pub mod sampling;
 #[cfg(test)]
 mod test_views;

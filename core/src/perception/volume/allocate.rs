@@ -5,7 +5,7 @@ use super::settings::{Extent, TRUNCATIONS};
 use super::{VolumeError, VolumeSettings};
 use crate::geometry::Vector;
 use crate::monitor::Meter;
-use crate::perception::depth::{DepthImage, Mask};
+use crate::perception::depth::{DepthImage, Mask, NOTHING};
 
 /// Greatest distance between two samples of a ray, voxels. A block is twice as wide, so its part near a surface is sampled by
 /// the ray of some pixel.
@@ -49,11 +49,13 @@ pub(super) fn allocate(
     for v in 0..height {
         meter.progress(v as f32 / height as f32);
         let before = found.surface;
-        for u in 0..width {
-            let Some(depth) = image.depth(u, v).filter(|depth| *depth <= settings.max_depth) else {
-                continue;
-            };
-            if mask.is_some_and(|mask| !mask.holds((v * width + u) as usize)) {
+        let first = v as usize * width as usize;
+        for (u, raw) in image.depths()[first..first + width as usize].iter().enumerate() {
+            let depth = f32::from(*raw) * image.scale();
+            if matches!(*raw, 0 | NOTHING)
+                || depth > settings.max_depth
+                || mask.is_some_and(|mask| !mask.holds(first + u))
+            {
                 continue;
             }
             let [x, y] = image.camera().direction([u as f32, v as f32]);

@@ -25,6 +25,8 @@ pub(super) struct Fusion<'a> {
     max_depth: f32,
     /// Difference of raw depths that is a jump.
     jump: f32,
+    /// [`OUTLINE`] in pixels across and down, at a depth of a metre.
+    outline: [f32; 2],
 }
 
 impl<'a> Fusion<'a> {
@@ -46,6 +48,7 @@ impl<'a> Fusion<'a> {
             truncation: settings.truncation,
             max_depth: settings.max_depth,
             jump: settings.truncation / image.scale(),
+            outline: image.camera().focal().map(|focal| OUTLINE * settings.voxel * focal),
         }
     }
 
@@ -170,15 +173,15 @@ impl<'a> Fusion<'a> {
     #[inline]
     fn is_near_outline(&self, [u, v]: [u32; 2], raw: u16, inverse_depth: f32) -> bool {
         let camera = self.image.camera();
-        let ([width, height], focal, depths) = (camera.size(), camera.focal(), self.image.depths());
-        let radius = |axis: usize| libm::ceilf(OUTLINE * self.voxel * focal[axis] * inverse_depth) as u32;
+        let ([width, height], depths) = (camera.size(), self.image.depths());
+        let radius = |axis: usize| (self.outline[axis] * inverse_depth + 1.0) as usize;
         let (across, down) = (radius(0), radius(1));
         let (u, v, width, height) = (u as usize, v as usize, width as usize, height as usize);
         let probes = [
-            (u.saturating_sub(across as usize), v),
-            (u.saturating_add(across as usize).min(width - 1), v),
-            (u, v.saturating_sub(down as usize)),
-            (u, v.saturating_add(down as usize).min(height - 1)),
+            (u.saturating_sub(across), v),
+            (u.saturating_add(across).min(width - 1), v),
+            (u, v.saturating_sub(down)),
+            (u, v.saturating_add(down).min(height - 1)),
         ];
         let limit = f32::from(raw) + self.jump;
         probes.into_iter().any(|(u, v)| {

@@ -32,6 +32,10 @@ impl Voxel {
     #[inline]
     pub(super) fn observe(&mut self, distance: f32, weight: f32) {
         let weight = (weight + 0.5) as u16;
+        if distance == 1.0 && self.distance == Self::FREE {
+            self.weight = self.weight.saturating_add(weight);
+            return;
+        }
         let old = self.weight.min(u16::MAX - weight);
         let sum = old + weight;
         let mean = f32::from(self.distance);
