@@ -108,7 +108,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
             },
             params,
         };
-        output.write(&json::text(&document))?;
+        output.write(json::text(&document))?;
     }
     if is_table_shown {
         terminal::print(&text)?;
