@@ -1,7 +1,7 @@
 use super::*;
-use crate::geometry::Point;
+use crate::geometry::{Aabb, Point, Vector};
 use crate::perception::test_views::{
-    BALL_RADIUS, BOX, Distance, TORUS, View, around, ball, camera, cuboid, look_from, torus,
+    BALL_RADIUS, BOX, Distance, TORUS, View, around, ball, camera, cuboid, look_from, poses, torus,
 };
 use crate::perception::volume::{VolumeLimits, VolumeSettings};
 use std::collections::HashMap;
@@ -16,7 +16,7 @@ struct Extracted {
 
 /// Fuses the views and returns the surface.
 fn extract<'a>(settings: &VolumeSettings, views: impl IntoIterator<Item = &'a View>) -> Extracted {
-    let limits = VolumeLimits { blocks: 6000 };
+    let limits = VolumeLimits { blocks: 20000 };
     let mut memory = vec![0; Volume::bytes(&limits)];
     let mut volume = Volume::new(settings, &limits, &mut memory).unwrap();
     for view in views {
@@ -111,7 +111,7 @@ fn seen_once_it_is_open_and_nothing_is_invented() {
         for (eye, wall) in [([0.4, 0.0, 0.0], 0.0), ([0.1, -0.3, 0.25], 0.0), ([0.2, 0.1, 0.33], 0.7)] {
             let eye = Point::from(eye);
             let view = View::new(camera(), look_from(eye), shape, wall);
-            let crop = Some(crate::geometry::Aabb { min: [-0.07; 3].into(), max: [0.07; 3].into() });
+            let crop = Some(Aabb { min: [-0.07; 3].into(), max: [0.07; 3].into() });
             for dense in [false, true] {
                 let mesh = extract(&VolumeSettings { crop, dense, ..VolumeSettings::new(VOXEL) }, [&view]);
                 assert!(mesh.open_edges() > 0);
@@ -158,4 +158,24 @@ fn the_limits_are_named() {
 fn an_empty_volume_has_no_surface() {
     let mesh = extract(&VolumeSettings::new(VOXEL), []);
     assert!(mesh.vertices.is_empty() && mesh.triangles.is_empty());
+}
+
+/// A ring of wire 6 mm thick and a plate 3 mm thick, before a wall. What one side of them says reaches through to the other,
+/// and the wall beside them says that space is free.
+#[test]
+fn thin_things_keep_their_place() {
+    let wire: Distance = |p| (p.x.hypot(p.y) - 0.04).hypot(p.z) - 0.003;
+    let plate: Distance = |p| {
+        let outside = [p.x.abs() - 0.04, p.y.abs() - 0.04, p.z.abs() - 0.0015];
+        let most = outside[0].max(outside[1]).max(outside[2]);
+        Vector::from(outside.map(|x| x.max(0.0))).norm() + most.min(0.0)
+    };
+    let crop = Some(Aabb { min: [-0.07; 3].into(), max: [0.07; 3].into() });
+    for (shape, voxel) in [(wire, 0.001), (plate, 0.0015)] {
+        let views: Vec<View> = poses(24).map(|pose| View::new(camera(), pose, shape, 0.75)).collect();
+        let mesh = extract(&VolumeSettings { crop, ..VolumeSettings::new(voxel) }, &views);
+        let (within, worst) = mesh.accuracy(shape, 0.5 * voxel);
+        assert!(within > 0.95 && worst < voxel, "{within} {worst}");
+        assert_eq!(mesh.open_edges(), 0);
+    }
 }

@@ -10,6 +10,8 @@ use crate::perception::depth::{DepthImage, Mask, NOTHING};
 /// Radius around a voxel's pixel within which a jump in depth counts as near, voxels: enough for the straight outline of
 /// an object at any angle to cross one of the four probes before it reaches a neighbouring voxel.
 const OUTLINE: f32 = 1.5;
+/// Mean distance from an outline of the voxels that are nearer than [`OUTLINE`], voxels.
+const BESIDE: f32 = OUTLINE / 2.0;
 const ROW: usize = BLOCK as usize;
 
 /// One image against the blocks of a volume.
@@ -151,8 +153,9 @@ impl<'a> Fusion<'a> {
         let distance = surface - depth;
         let weight = weight(inverse_depth);
         if distance >= self.truncation {
-            // Free, whatever the pixel shows.
-            voxel.observe(1.0, weight);
+            // Free, whatever the pixel shows. Beside an outline, the surface is nearer than along the ray.
+            let is_beside = self.is_beside_surface([u, v], depth, inverse_depth);
+            voxel.observe(if is_beside { BESIDE * self.voxel / self.truncation } else { 1.0 }, weight);
             return true;
         }
         if distance <= -self.truncation
@@ -171,23 +174,41 @@ impl<'a> Fusion<'a> {
     /// Whether the depth jumps back close to a pixel. What is behind such a pixel borders on what is seen free beside it;
     /// there is no surface between them.
     #[inline]
-    fn is_near_outline(&self, [u, v]: [u32; 2], raw: u16, inverse_depth: f32) -> bool {
-        let camera = self.image.camera();
-        let ([width, height], depths) = (camera.size(), self.image.depths());
-        let radius = |axis: usize| (self.outline[axis] * inverse_depth + 1.0) as usize;
-        let (across, down) = (radius(0), radius(1));
-        let (u, v, width, height) = (u as usize, v as usize, width as usize, height as usize);
-        let probes = [
-            (u.saturating_sub(across), v),
-            (u.saturating_add(across).min(width - 1), v),
-            (u, v.saturating_sub(down)),
-            (u, v.saturating_add(down).min(height - 1)),
-        ];
+    fn is_near_outline(&self, pixel: [u32; 2], raw: u16, inverse_depth: f32) -> bool {
         let limit = f32::from(raw) + self.jump;
-        probes.into_iter().any(|(u, v)| {
-            let other = depths[v * width + u];
+        self.probes(pixel, inverse_depth).into_iter().any(|probe| {
+            let other = self.image.depths()[probe];
             other != NOTHING && f32::from(other) > limit
         })
+    }
+
+    /// Whether a pixel that sees past a depth, metres, has a surface close beside it: one at this
+    /// depth, or up to the truncation before it, which may reach as far.
+    #[inline]
+    fn is_beside_surface(&self, pixel: [u32; 2], depth: f32, inverse_depth: f32) -> bool {
+        let raw = depth / self.image.scale();
+        let (nearest, farthest) = (raw - self.jump, raw + OUTLINE * self.voxel / self.image.scale());
+        self.probes(pixel, inverse_depth).into_iter().any(|probe| {
+            let other = self.image.depths()[probe];
+            // No surface is at the depth of pixels that saw nothing.
+            !matches!(other, 0 | NOTHING)
+                && (nearest..farthest).contains(&f32::from(other))
+                && self.mask.is_none_or(|mask| mask.holds(probe))
+        })
+    }
+
+    /// Four pixels around one, [`OUTLINE`] away at the depth of a voxel.
+    #[inline]
+    fn probes(&self, [u, v]: [u32; 2], inverse_depth: f32) -> [usize; 4] {
+        let [width, height] = self.image.camera().size().map(|x| x as usize);
+        let radius = |axis: usize| (self.outline[axis] * inverse_depth + 1.0) as usize;
+        let (across, down, u, v) = (radius(0), radius(1), u as usize, v as usize);
+        [
+            v * width + u.saturating_sub(across),
+            v * width + u.saturating_add(across).min(width - 1),
+            v.saturating_sub(down) * width + u,
+            v.saturating_add(down).min(height - 1) * width + u,
+        ]
     }
 }
 
