@@ -21,9 +21,11 @@
 mod analyze;
 pub mod files;
 pub mod parry;
+mod scan;
 
 pub use analyze::{LIMITS, TooLarge, analyze_object, analyze_supporter, predict_poses, sample_supporter};
 pub use hangpose_core::*;
+pub use scan::{FuseError, ScannedMesh, scan};
 
 /// Compiles the Rust code of the README.
 #[cfg(doctest)]

@@ -13,6 +13,7 @@ fn main() -> ExitCode {
     let result = match &command {
         cli::Command::Predict(arguments) => cli::predict::run(arguments),
         cli::Command::Inspect(arguments) => cli::inspect::run(arguments),
+        cli::Command::Scan(arguments) => cli::scan::run(arguments),
     };
     result.unwrap_or_else(|error| {
         cli::say("error", format_args!("{error:#}"));

@@ -2,6 +2,12 @@
 
 pub(crate) mod cleaning;
 pub mod depth;
+pub mod depth_points;
+pub mod isosurface;
 pub mod normals;
 mod orientation;
+pub mod plane;
 pub mod sampling;
+#[cfg(test)]
+mod test_views;
+pub mod volume;

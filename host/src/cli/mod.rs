@@ -8,11 +8,13 @@ mod output;
 mod params;
 pub(crate) mod predict;
 mod progress;
+pub(crate) mod scan;
 mod terminal;
 
 pub(crate) use terminal::say;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use hangpose::geometry::Aabb;
 use std::path::PathBuf;
 
 /// Predict how to hang an object on a supporter, without training data and without a GPU.
@@ -38,6 +40,12 @@ pub(crate) enum Command {
     ///
     /// Exit status: 0 the file was read, even if it has no candidates, 1 bad input, 2 bad usage.
     Inspect(InspectArguments),
+    /// Fuse depth images into the mesh of an object or of a scene.
+    ///
+    /// World coordinates are those of the poses, in metres. The mesh is open where no camera saw the surface.
+    ///
+    /// Exit status: 0 the mesh was written, 1 bad input, 2 bad usage.
+    Scan(ScanArguments),
 }
 
 #[derive(Args)]
@@ -99,6 +107,49 @@ pub(crate) struct InspectArguments {
     up: Axis,
     #[command(flatten)]
     cloud: CloudArguments,
+}
+
+#[derive(Args)]
+pub(crate) struct ScanArguments {
+    /// Depth images: PNG with one channel of 16 bits. A path, a pattern in quotes such as 'scan/*.png', or a text file with
+    /// a time and a path on each line (TUM's depth.txt).
+    #[arg(long, value_name = "PATTERN")]
+    depth: String,
+    /// Intrinsics: a 3 x 3 matrix as text, or JSON of Open3D (PinholeCameraIntrinsic, PinholeCameraParameters) or BOP
+    /// (scene_camera.json).
+    #[arg(long, value_name = "FILE")]
+    camera: PathBuf,
+    /// Poses of the cameras: files of one 4 x 4 matrix each, or one file (4 x 4 matrices, an Open3D .log, a TUM trajectory,
+    /// a BOP scene_camera.json). Not needed for a single image or if the camera file has poses.
+    #[arg(long, value_name = "PATTERN")]
+    poses: Option<String>,
+    /// Poses map world to camera coordinates, not camera to world.
+    #[arg(long)]
+    world_to_camera: bool,
+    /// Metres per unit of depth [default: 0.001, or what the BOP file says].
+    #[arg(long, value_name = "METRES", value_parser = parse_scale)]
+    depth_scale: Option<f32>,
+    /// Masks: PNG with one label a pixel, one mask for each image.
+    #[arg(long, value_name = "PATTERN", requires = "label")]
+    mask: Option<String>,
+    /// Label of the object in the masks.
+    #[arg(long, value_name = "N", requires = "mask")]
+    label: Option<u8>,
+    /// Size of a voxel, metres.
+    #[arg(long, value_name = "METRES", default_value_t = 0.002, value_parser = parse_scale)]
+    voxel: f32,
+    /// Box in world coordinates, metres, outside of which everything is ignored: least x, y, z and greatest x, y, z.
+    #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = parse_box, allow_hyphen_values = true)]
+    crop: Option<Aabb>,
+    /// Depth beyond which surfaces are ignored, metres.
+    #[arg(long, value_name = "METRES", default_value_t = 5.0, value_parser = parse_scale)]
+    max_depth: f32,
+    /// The mesh as PLY; - for standard output.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Also write the positions of the cameras as a JSON list.
+    #[arg(long, value_name = "FILE")]
+    viewpoints: Option<PathBuf>,
 }
 
 /// The constants of the method.
@@ -190,6 +241,14 @@ fn parse_numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     match numbers.map(<[f64; N]>::try_from) {
         Ok(Ok(numbers)) if numbers.iter().all(|x| x.is_finite()) => Ok(numbers),
         _ => Err(format!("use {N} comma-separated numbers, as in 0.01,0,-0.2")),
+    }
+}
+
+fn parse_box(text: &str) -> Result<Aabb, String> {
+    let numbers: Result<Vec<f32>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[a, b, c, d, e, f]) => Ok(Aabb { min: [a, b, c].into(), max: [d, e, f].into() }),
+        _ => Err("use six comma-separated numbers, as in -0.1,-0.1,0,0.1,0.1,0.3".into()),
     }
 }
 

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Destination of a text.
+/// Destination of a text or of bytes.
 pub(super) enum Output {
     /// Standard output.
     Standard,
@@ -44,18 +44,18 @@ impl Output {
         Ok(Self::File(target))
     }
 
-    /// Writes `text`.
-    pub(super) fn write(self, text: &str) -> Result<()> {
+    /// Writes `content`.
+    pub(super) fn write(self, content: impl AsRef<[u8]>) -> Result<()> {
         match self {
-            Self::Standard => terminal::print(text),
-            Self::Stream { mut stream, path } => match stream.write_all(text.as_bytes()) {
+            Self::Standard => terminal::print(content),
+            Self::Stream { mut stream, path } => match stream.write_all(content.as_ref()) {
                 Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
                 result => result.with_context(|| path.display().to_string()),
             },
             Self::File(path) => {
                 let cannot = |error: io::Error| cannot_write(&path, &error);
                 let mut temporary = temporary_beside(&path).map_err(cannot)?;
-                temporary.write_all(text.as_bytes()).map_err(cannot)?;
+                temporary.write_all(content.as_ref()).map_err(cannot)?;
                 temporary.persist(&path).map_err(|error| cannot(error.error))?;
                 Ok(())
             }

@@ -108,7 +108,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
             },
             params,
         };
-        output.write(&json::text_in_frame(&document, points.origin))?;
+        output.write(json::text_in_frame(&document, points.origin))?;
     }
     if is_table_shown {
         terminal::print(&text)?;

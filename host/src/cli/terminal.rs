@@ -5,9 +5,9 @@ use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 
 /// Prints a result. A pipe that its reader has closed, as `head` does, is not an error.
-pub(super) fn print(text: &str) -> Result<()> {
+pub(super) fn print(content: impl AsRef<[u8]>) -> Result<()> {
     let mut stdout = std::io::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+    match stdout.write_all(content.as_ref()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
         result => result.context("standard output cannot be written"),
     }

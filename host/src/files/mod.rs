@@ -1,4 +1,4 @@
-//! Reads meshes and point clouds from files.
+//! Reads meshes, point clouds and depth images from files.
 //!
 //! | kind  | extensions | notes |
 //! | ----- | ---------- | ----- |
@@ -10,6 +10,8 @@
 //! | cloud | `pcd`      | text, binary and compressed; missing (NaN) points are dropped |
 //! | cloud | `xyz`, `txt`, `pts` | `x y z` or `x y z nx ny nz` per line |
 //!
+//! Depth images and what belongs to them are in [`depth`].
+//!
 //! Coordinates are returned as in the file. Only glTF has a unit, and no format is rotated or scaled here. glTF is y-up
 //! by its specification; the caller states the up axis.
 //!
@@ -18,6 +20,7 @@
 //! makes a reader panic, or reserve memory out of proportion to the length of the file.
 
 mod cloud;
+pub mod depth;
 mod error;
 mod mesh;
 mod ply;
@@ -27,5 +30,5 @@ mod text;
 
 pub use cloud::{CloudFile, read_cloud};
 pub use error::{FileError, Place};
-pub use mesh::{MeshFile, read_mesh};
+pub use mesh::{MeshFile, ply_bytes, read_mesh};
 pub use supporter::{SupporterFile, read_supporter};

@@ -89,7 +89,7 @@ impl<'a> Source<'a> {
     }
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+pub(super) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     let unreadable = |reason: &str| FileError::Unreadable { path: path.into(), reason: reason.into() };
     let from_io = |e: std::io::Error| match e.kind() {
         ErrorKind::NotFound => FileError::Missing { path: path.into() },

@@ -113,6 +113,16 @@ impl DepthCamera {
         self.focal
     }
 
+    /// Principal point cx and cy, pixels.
+    pub fn centre(&self) -> [f32; 2] {
+        self.centre
+    }
+
+    /// Whether the lens distorts.
+    pub fn is_distorted(&self) -> bool {
+        self.distortion != [0.0; 5]
+    }
+
     /// The pixel coordinates at which the camera sees a point given in camera coordinates, metres; `None` if the point is
     /// not in front of the camera. They may be outside the image.
     pub fn project(&self, [x, y, z]: [f32; 3]) -> Option<[f32; 2]> {
@@ -127,7 +137,7 @@ impl DepthCamera {
     pub fn direction(&self, [u, v]: [f32; 2]) -> [f32; 2] {
         let seen = [(u - self.centre[0]) / self.focal[0], (v - self.centre[1]) / self.focal[1]];
         let mut undistorted = seen;
-        if self.distortion != [0.0; 5] {
+        if self.is_distorted() {
             for _ in 0..UNDISTORTION_STEPS {
                 let again = self.distort(undistorted);
                 undistorted = [0, 1].map(|i| undistorted[i] + seen[i] - again[i]);

@@ -4,7 +4,7 @@ use super::DepthCamera;
 use crate::geometry::{MAX_COORDINATE, Point, Pose};
 
 /// Depths beyond every range: what cameras write where they saw nothing, apart from 0.
-const NOTHING: u16 = u16::MAX;
+pub(crate) const NOTHING: u16 = u16::MAX;
 
 /// A checked view of a depth image. Nothing is copied.
 #[derive(Clone, Copy, Debug)]
@@ -95,6 +95,16 @@ impl<'a> DepthImage<'a> {
     /// The camera.
     pub fn camera(&self) -> &DepthCamera {
         &self.camera
+    }
+
+    /// The depths as they were given, row by row, in units of [`scale`](Self::scale).
+    pub fn depths(&self) -> &'a [u16] {
+        self.depths
+    }
+
+    /// Metres per unit of depth.
+    pub fn scale(&self) -> f32 {
+        self.scale
     }
 
     /// Pose of the camera: maps camera to world coordinates.

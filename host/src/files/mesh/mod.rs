@@ -5,8 +5,11 @@ mod obj;
 mod polygon;
 mod raw;
 mod stl;
+mod write;
 
 use std::path::Path;
+
+pub use write::ply as ply_bytes;
 
 use super::FileError;
 use super::ply::{self, Ply};

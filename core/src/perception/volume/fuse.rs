@@ -1,0 +1,215 @@
+//! Projective fusion: every voxel takes over what the pixel that it falls on says of it.
+
+use super::VolumeSettings;
+use super::blocks::{BLOCK, BLOCK_VOXELS, Key, VOXEL_RANGE};
+use super::settings::Extent;
+use super::voxel::{Voxel, weight};
+use crate::geometry::{Point, Vector};
+use crate::perception::depth::{DepthImage, Mask, NOTHING};
+
+/// Radius around a voxel's pixel within which a jump in depth counts as near, voxels: enough for the straight outline of
+/// an object at any angle to cross one of the four probes before it reaches a neighbouring voxel.
+const OUTLINE: f32 = 1.5;
+/// Mean distance from an outline of the voxels that are nearer than [`OUTLINE`], voxels.
+const BESIDE: f32 = OUTLINE / 2.0;
+const ROW: usize = BLOCK as usize;
+
+/// One image against the blocks of a volume.
+pub(super) struct Fusion<'a> {
+    image: &'a DepthImage<'a>,
+    mask: Option<Mask<'a>>,
+    extent: &'a Extent,
+    /// In camera coordinates, metres: the world's origin, and the ways to the next voxel along each axis.
+    origin: Vector,
+    steps: [Vector; 3],
+    voxel: f32,
+    truncation: f32,
+    max_depth: f32,
+    /// Difference of raw depths that is a jump.
+    jump: f32,
+    /// [`OUTLINE`] in pixels across and down, at a depth of a metre.
+    outline: [f32; 2],
+}
+
+impl<'a> Fusion<'a> {
+    pub(super) fn new(
+        settings: &VolumeSettings,
+        extent: &'a Extent,
+        image: &'a DepthImage<'a>,
+        mask: Option<Mask<'a>>,
+    ) -> Self {
+        let inverse = image.pose().inverse();
+        let rotation = inverse.rotation.to_rotation_matrix();
+        Self {
+            image,
+            mask,
+            extent,
+            origin: inverse.translation.vector,
+            steps: [Vector::x(), Vector::y(), Vector::z()].map(|axis| rotation * axis * settings.voxel),
+            voxel: settings.voxel,
+            truncation: settings.truncation,
+            max_depth: settings.max_depth,
+            jump: settings.truncation / image.scale(),
+            outline: image.camera().focal().map(|focal| OUTLINE * settings.voxel * focal),
+        }
+    }
+
+    /// Updates a block; returns the number of voxels that were seen.
+    pub(super) fn update(&self, key: Key, voxels: &mut [Voxel]) -> usize {
+        let first = key.first_voxel();
+        let offset = first.map(|x| x as f32 - VOXEL_RANGE as f32);
+        let [x, y, z] = self.steps;
+        let corner = self.origin + x * offset[0] + y * offset[1] + z * offset[2];
+        if !self.may_see(&corner) {
+            return 0;
+        }
+        let mut seen = 0;
+        // The part of the block that is in the extent.
+        let from = [0, 1, 2].map(|i| self.extent.first[i].saturating_sub(first[i]) as usize);
+        let to = [0, 1, 2].map(|i| ((self.extent.last[i] + 1).saturating_sub(first[i]) as usize).min(ROW));
+        for k in from[2]..to[2] {
+            for j in from[1]..to[1] {
+                let start = corner + y * j as f32 + z * k as f32;
+                let row = &mut voxels[ROW * (j + ROW * k)..][..ROW];
+                seen += self.update_row(&start, &mut row[..to[0]], from[0]);
+            }
+        }
+        seen
+    }
+
+    /// Whether some voxel of the block whose first voxel is at `corner` may be in the image.
+    fn may_see(&self, corner: &Vector) -> bool {
+        let [x, y, z] = self.steps;
+        let half = (ROW - 1) as f32 / 2.0;
+        let centre = corner + (x + y + z) * half;
+        // The sphere around the block.
+        let radius = 1.75 * half * self.voxel;
+        let near = centre.z - radius;
+        if near <= 0.0 {
+            return centre.z + radius > 0.0;
+        }
+        let camera = self.image.camera();
+        if camera.is_distorted() {
+            return true;
+        }
+        let (focal, middle, size) = (camera.focal(), camera.centre(), camera.size());
+        (0..2).all(|i| {
+            // Bounds of the sphere's image: those of the box around it.
+            let [low, high] = [centre[i] - radius, centre[i] + radius];
+            let far = centre.z + radius;
+            let low = low / if low < 0.0 { near } else { far };
+            let high = high / if high < 0.0 { far } else { near };
+            focal[i] * high + middle[i] > -0.5 && focal[i] * low + middle[i] < size[i] as f32 - 0.5
+        })
+    }
+
+    /// Updates the voxels of a row from the index `from` on. The first voxel of the row is at `start` in camera
+    /// coordinates.
+    #[inline]
+    fn update_row(&self, start: &Vector, row: &mut [Voxel], from: usize) -> usize {
+        let camera = self.image.camera();
+        let (focal, centre, [width, height]) = (camera.focal(), camera.centre(), camera.size());
+        let step = self.steps[0];
+        // Apart from the look-ups, so that the compiler makes vector instructions of it.
+        let (mut depths, mut inverses) = ([0.0_f32; ROW], [0.0_f32; ROW]);
+        let (mut columns, mut lines) = ([0.0_f32; ROW], [0.0_f32; ROW]);
+        for i in 0..ROW {
+            let along = i as f32;
+            depths[i] = start.z + step.z * along;
+            inverses[i] = 1.0 / depths[i];
+            columns[i] = (start.x + step.x * along) * inverses[i] * focal[0] + (centre[0] + 0.5);
+            lines[i] = (start.y + step.y * along) * inverses[i] * focal[1] + (centre[1] + 0.5);
+        }
+        if camera.is_distorted() {
+            for i in 0..ROW {
+                let at = Point::from(start + step * i as f32);
+                let pixel = camera.project(at.into()).unwrap_or([-1.0; 2]);
+                (columns[i], lines[i]) = (pixel[0] + 0.5, pixel[1] + 0.5);
+            }
+        }
+        let (last_column, last_line) = (width as f32, height as f32);
+        let mut seen = 0;
+        for (i, voxel) in row.iter_mut().enumerate().skip(from) {
+            let is_inside = depths[i] > 0.0
+                && (0.0..last_column).contains(&columns[i])
+                && (0.0..last_line).contains(&lines[i]);
+            if is_inside {
+                let [u, v] = [columns[i] as u32, lines[i] as u32];
+                seen += usize::from(self.observe(voxel, [u, v], depths[i], inverses[i]));
+            }
+        }
+        seen
+    }
+
+    /// Takes what a pixel says into a voxel at the given depth; false if it says nothing of it.
+    #[inline]
+    fn observe(&self, voxel: &mut Voxel, [u, v]: [u32; 2], depth: f32, inverse_depth: f32) -> bool {
+        let pixel = v as usize * self.image.camera().size()[0] as usize + u as usize;
+        let raw = self.image.depths()[pixel];
+        if matches!(raw, 0 | NOTHING) {
+            return false;
+        }
+        let surface = f32::from(raw) * self.image.scale();
+        let distance = surface - depth;
+        let weight = weight(inverse_depth);
+        if distance >= self.truncation {
+            // Free, whatever the pixel shows. Beside an outline, the surface is nearer than along the ray.
+            let is_beside = self.is_beside_surface([u, v], depth, inverse_depth);
+            voxel.observe(if is_beside { BESIDE * self.voxel / self.truncation } else { 1.0 }, weight);
+            return true;
+        }
+        if distance <= -self.truncation
+            || surface > self.max_depth
+            || self.mask.is_some_and(|mask| !mask.holds(pixel))
+            || (distance < -self.voxel && self.is_near_outline([u, v], raw, inverse_depth))
+        {
+            return false;
+        }
+        let part = distance / self.truncation;
+        // Behind the surface, trust ends with the truncation, so that thin walls keep their other side.
+        voxel.observe(part, (weight * (1.0 + part.min(0.0))).max(1.0));
+        true
+    }
+
+    /// Whether the depth jumps back close to a pixel. What is behind such a pixel borders on what is seen free beside it;
+    /// there is no surface between them.
+    #[inline]
+    fn is_near_outline(&self, pixel: [u32; 2], raw: u16, inverse_depth: f32) -> bool {
+        let limit = f32::from(raw) + self.jump;
+        self.probes(pixel, inverse_depth).into_iter().any(|probe| {
+            let other = self.image.depths()[probe];
+            other != NOTHING && f32::from(other) > limit
+        })
+    }
+
+    /// Whether a pixel that sees past a depth, metres, has a surface close beside it: one at this
+    /// depth, or up to the truncation before it, which may reach as far.
+    #[inline]
+    fn is_beside_surface(&self, pixel: [u32; 2], depth: f32, inverse_depth: f32) -> bool {
+        let raw = depth / self.image.scale();
+        let (nearest, farthest) = (raw - self.jump, raw + OUTLINE * self.voxel / self.image.scale());
+        self.probes(pixel, inverse_depth).into_iter().any(|probe| {
+            let other = self.image.depths()[probe];
+            // No surface is at the depth of pixels that saw nothing.
+            !matches!(other, 0 | NOTHING)
+                && (nearest..farthest).contains(&f32::from(other))
+                && self.mask.is_none_or(|mask| mask.holds(probe))
+        })
+    }
+
+    /// Four pixels around one, [`OUTLINE`] away at the depth of a voxel.
+    #[inline]
+    fn probes(&self, [u, v]: [u32; 2], inverse_depth: f32) -> [usize; 4] {
+        let [width, height] = self.image.camera().size().map(|x| x as usize);
+        let radius = |axis: usize| (self.outline[axis] * inverse_depth + 1.0) as usize;
+        let (across, down, u, v) = (radius(0), radius(1), u as usize, v as usize);
+        [
+            v * width + u.saturating_sub(across),
+            v * width + u.saturating_add(across).min(width - 1),
+            v.saturating_sub(down) * width + u,
+            v.saturating_add(down).min(height - 1) * width + u,
+        ]
+    }
+}
+
+const _: () = assert!(ROW * ROW * ROW == BLOCK_VOXELS);

@@ -1,0 +1,165 @@
+//! From depth images to the mesh of what they show.
+
+mod agreement;
+
+use crate::files::depth::ScanFrame;
+use hangpose_core::Monitor;
+use hangpose_core::geometry::{Aabb, Point, Pose};
+use hangpose_core::perception::depth::{DepthImage, DepthImageError};
+use hangpose_core::perception::isosurface::{Isosurface, IsosurfaceError};
+use hangpose_core::perception::volume::{Volume, VolumeError, VolumeLimits, VolumeSettings};
+
+/// Blocks of the first attempt, about 9 MB.
+const FIRST_BLOCKS: usize = 1 << 12;
+/// Most blocks that are tried, about 1.1 GB.
+const MOST_BLOCKS: usize = 1 << 19;
+/// Every so many pixels in both directions are looked at for the extent of what the images show.
+const EXTENT_STRIDE: usize = 8;
+
+/// The surface that depth images show.
+#[derive(Clone, Debug)]
+pub struct ScannedMesh {
+    /// Positions in world coordinates, metres.
+    pub vertices: Vec<[f32; 3]>,
+    /// Vertex indices, counter-clockwise seen from free space.
+    pub triangles: Vec<[u32; 3]>,
+    /// Positions of the cameras in world coordinates, metres.
+    pub viewpoints: Vec<[f32; 3]>,
+    /// Pixels that were fused, of all images.
+    pub pixels: usize,
+    /// Memory of the volume, bytes.
+    pub volume_bytes: usize,
+    /// Part of the points of an image that reappear in the next; `None` for a single image.
+    pub agreement: Option<f32>,
+}
+
+/// Why depth images do not give a mesh.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FuseError {
+    /// There are no images.
+    #[error("there are no images: give at least one")]
+    Empty,
+    /// An image is not usable.
+    #[error("image {index} (counted from 0): {error}")]
+    Image {
+        /// Index of the image.
+        index: usize,
+        /// What is wrong.
+        error: DepthImageError,
+    },
+    /// The poses map the wrong way.
+    #[error(
+        "the images do not fit together: {:.0} % of the points of an image reappear in the next, but {:.0} % with inverted poses, so the poses probably map the other way between camera and world",
+        100.0 * given, 100.0 * inverted
+    )]
+    Convention {
+        /// Part that reappears with the poses as given.
+        given: f32,
+        /// Part that reappears with inverted poses.
+        inverted: f32,
+    },
+    /// No image shows a surface within the volume.
+    #[error(
+        "no image shows a surface within the crop box and the greatest depth of {max_depth} m; the images show {} to {}: check the crop box, the depth scale, the poses and the mask",
+        seen.min, seen.max
+    )]
+    Outside {
+        /// Greatest depth of the settings, metres.
+        max_depth: f32,
+        /// Box around what the images show, world coordinates, metres.
+        seen: Aabb,
+    },
+    /// The volume does not fit into the memory that a scan may use.
+    #[error("image {index} (counted from 0): {error}")]
+    Volume {
+        /// Index of the image.
+        index: usize,
+        /// What is wrong.
+        error: VolumeError,
+    },
+    /// The settings are not usable, or the call was cancelled.
+    #[error(transparent)]
+    Settings(#[from] VolumeError),
+    /// The surface is too large, or the call was cancelled.
+    #[error(transparent)]
+    Surface(#[from] IsosurfaceError),
+}
+
+/// Fuses the images in a volume of these settings and returns its surface. The volume grows up to about 1.1 GB.
+pub fn scan(
+    frames: &[ScanFrame],
+    settings: &VolumeSettings,
+    monitor: &Monitor,
+) -> Result<ScannedMesh, FuseError> {
+    let image = |(index, frame): (usize, &'_ ScanFrame)| {
+        frame.image().map(drop).map_err(|error| FuseError::Image { index, error })
+    };
+    frames.iter().enumerate().try_for_each(image)?;
+    let images: Vec<DepthImage> = frames.iter().filter_map(|frame| frame.image().ok()).collect();
+    if images.is_empty() {
+        return Err(FuseError::Empty);
+    }
+    let agreement = agreement::of(&images, |pose| *pose);
+    let inverted = agreement::of(&images, Pose::inverse);
+    if let (Some(given), Some(inverted)) = (agreement, inverted)
+        && inverted > agreement::FAIR
+        && inverted > 2.0 * given
+    {
+        return Err(FuseError::Convention { given, inverted });
+    }
+    let mut blocks = settings.dense_blocks().filter(|_| settings.dense).unwrap_or(FIRST_BLOCKS);
+    loop {
+        match attempt(frames, &images, settings, blocks, monitor) {
+            Err(FuseError::Volume { error: VolumeError::Full { .. }, .. }) if 2 * blocks <= MOST_BLOCKS => {
+                blocks *= 2;
+            }
+            result => return result.map(|mesh| ScannedMesh { agreement, ..mesh }),
+        }
+    }
+}
+
+/// Fuses the images in a volume of so many blocks.
+fn attempt(
+    frames: &[ScanFrame],
+    images: &[DepthImage],
+    settings: &VolumeSettings,
+    blocks: usize,
+    monitor: &Monitor,
+) -> Result<ScannedMesh, FuseError> {
+    let limits = VolumeLimits { blocks };
+    let mut memory = vec![0; Volume::bytes(&limits)];
+    let volume_bytes = memory.len();
+    let mut volume = Volume::new(settings, &limits, &mut memory)?;
+    let mut pixels = 0;
+    for (index, (image, frame)) in images.iter().zip(frames).enumerate() {
+        let done = volume.integrate(image, frame.mask(), monitor);
+        pixels += done.map_err(|error| FuseError::Volume { index, error })?.pixels;
+    }
+    if pixels == 0 {
+        return Err(FuseError::Outside { max_depth: settings.max_depth, seen: extent(frames, images) });
+    }
+    let mut scratch = vec![0; Isosurface::bytes(volume.blocks())];
+    let surface = Isosurface::find(&volume, &mut scratch, monitor)?;
+    let (mut vertices, mut triangles) =
+        (vec![[0.0; 3]; surface.vertices()], vec![[0; 3]; surface.triangles()]);
+    surface.write(&mut vertices, &mut triangles)?;
+    let viewpoints = images.iter().map(|image| image.viewpoint().into()).collect();
+    Ok(ScannedMesh { vertices, triangles, viewpoints, pixels, volume_bytes, agreement: None })
+}
+
+/// The box around what the images show, of the mask's label where there is one.
+fn extent(frames: &[ScanFrame], images: &[DepthImage]) -> Aabb {
+    let mut points: Vec<Point> = Vec::new();
+    for (image, frame) in images.iter().zip(frames) {
+        let [width, height] = image.camera().size();
+        for v in (0..height).step_by(EXTENT_STRIDE) {
+            for u in (0..width).step_by(EXTENT_STRIDE) {
+                let is_shown =
+                    frame.mask().is_none_or(|mask| mask.labels[(v * width + u) as usize] == mask.label);
+                points.extend(image.point(u, v).filter(|_| is_shown).map(|point| image.pose() * point));
+            }
+        }
+    }
+    Aabb::of(&points)
+}

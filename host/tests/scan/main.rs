@@ -1,0 +1,6 @@
+//! Depth images from files to a mesh: formats, errors and the command `hangpose scan`.
+
+mod command;
+mod errors;
+mod formats;
+mod scene;
