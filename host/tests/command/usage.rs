@@ -37,7 +37,11 @@ fn wrong_usage_has_its_own_status() {
 fn help_lists_every_option_and_status() {
     let run = run!("--help");
     assert_eq!(run.status, Some(0));
-    assert!(["predict", "inspect", "scan", "Example: hangpose predict"].iter().all(|part| run.stdout.contains(part)));
+    assert!(
+        ["predict", "inspect", "scan", "Example: hangpose predict"]
+            .iter()
+            .all(|part| run.stdout.contains(part))
+    );
     let help = run!("predict", "--help").stdout;
     for option in
         ["object", "supporter", "profile", "top", "seed", "com", "json", "params", "threads", "viewpoint"]
@@ -45,7 +49,8 @@ fn help_lists_every_option_and_status() {
         assert!(help.contains(&format!("--{option} <")), "{option}");
     }
     let help_of_scan = run!("scan", "--help").stdout;
-    for option in ["depth", "camera", "poses", "mask", "label", "voxel", "crop", "depth-scale", "viewpoints"] {
+    for option in ["depth", "camera", "poses", "mask", "label", "voxel", "crop", "depth-scale", "viewpoints"]
+    {
         assert!(help_of_scan.contains(&format!("--{option} <")), "{option}");
     }
     assert!(help_of_scan.contains("Exit status: 0") && help_of_scan.contains("--world-to-camera"));
