@@ -18,6 +18,9 @@ pub struct PlaneSettings {
     pub tolerance: f32,
     /// Least part of all points that must be on the plane, 0 to 1.
     pub least_part: f32,
+    /// A point that the normal faces, metres, such as the position of the camera; `None` for the side on which more of the
+    /// other points are.
+    pub viewpoint: Option<Point>,
     /// Seed of the random trials.
     pub seed: u64,
 }
@@ -25,14 +28,14 @@ pub struct PlaneSettings {
 impl Default for PlaneSettings {
     /// A tolerance of 8 mm, and a fifth of the points.
     fn default() -> Self {
-        Self { tolerance: 0.008, least_part: 0.2, seed: 1 }
+        Self { tolerance: 0.008, least_part: 0.2, viewpoint: None, seed: 1 }
     }
 }
 
 /// A plane: the points `p` with `normal · p = offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
-    /// Unit normal. It points to the side on which more of the other points are.
+    /// Unit normal, see [`PlaneSettings::viewpoint`].
     pub normal: Vector,
     /// Distance from the origin along the normal, metres.
     pub offset: f32,
@@ -99,7 +102,7 @@ pub fn dominant_plane(
     settings: &PlaneSettings,
     is_on_plane: &mut [bool],
 ) -> Result<Option<Plane>, PlaneError> {
-    let PlaneSettings { tolerance, least_part, seed } = *settings;
+    let PlaneSettings { tolerance, least_part, viewpoint, seed } = *settings;
     if !(tolerance.is_finite() && tolerance > 0.0) {
         return Err(PlaneError::Tolerance { tolerance });
     }
@@ -126,8 +129,14 @@ pub fn dominant_plane(
     for (mark, point) in is_on_plane.iter_mut().zip(points) {
         *mark = plane.distance(point).abs() <= tolerance;
     }
-    let before = points.iter().filter(|p| plane.distance(p) > tolerance).count();
-    if 2 * before < points.len() - plane.points {
+    let is_turned = match viewpoint {
+        Some(viewpoint) => plane.distance(&viewpoint) < 0.0,
+        None => {
+            let before = points.iter().filter(|p| plane.distance(p) > tolerance).count();
+            2 * before < points.len() - plane.points
+        }
+    };
+    if is_turned {
         plane = Plane { normal: -plane.normal, offset: -plane.offset, ..plane };
     }
     Ok(Some(plane))
@@ -219,6 +228,10 @@ mod tests {
                 assert!((found.normal - truth.normal).norm() < 1e-3, "{found:?}");
                 assert!((found.offset - truth.offset).abs() < 5e-4, "{found:?}");
             }
+            let below = Some(Point::from(truth.normal * (truth.offset - 1.0)));
+            let settings = PlaneSettings { viewpoint: below, ..PlaneSettings::default() };
+            let turned = dominant_plane(&points, &settings, &mut marks).unwrap().unwrap();
+            assert!(turned.distance(&Point::from(truth.normal * (truth.offset - 1.0))) > 0.0, "{turned:?}");
             let again = dominant_plane(&points, &PlaneSettings::default(), &mut marks).unwrap().unwrap();
             assert_eq!(found, again);
         }

@@ -7,13 +7,10 @@ use anyhow::{Context, Result, anyhow, bail};
 use hangpose::files::depth::{ScanError, ScanSources, read_scan};
 use hangpose::files::ply_bytes;
 use hangpose::perception::volume::VolumeSettings;
-use hangpose::{FuseError, Monitor};
+use hangpose::{FAIR_AGREEMENT, FuseError, Monitor};
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
-
-/// Part of the points of an image that should reappear in the next.
-const FAIR_AGREEMENT: f32 = 0.3;
 
 pub(crate) fn run(arguments: &ScanArguments) -> Result<ExitCode> {
     let start = Instant::now();

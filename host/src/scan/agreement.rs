@@ -9,9 +9,6 @@ const PAIRS: usize = 16;
 const STRIDE: usize = 8;
 /// Difference of depths that still agree: a constant part, metres, and a part of the depth. More than the noise of cameras.
 const TOLERANCE: [f32; 2] = [0.01, 0.02];
-/// Part of the points that should reappear at least where two images overlap.
-pub(super) const FAIR: f32 = 0.3;
-
 /// Part of the points of an image that reappear in the next at the same depth, with poses changed by `change`; `None` for a
 /// single image.
 pub(super) fn of(images: &[DepthImage], change: impl Fn(&Pose) -> Pose) -> Option<f32> {

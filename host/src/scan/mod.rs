@@ -16,6 +16,9 @@ const MOST_BLOCKS: usize = 1 << 19;
 /// Every so many pixels in both directions are looked at for the extent of what the images show.
 const EXTENT_STRIDE: usize = 8;
 
+/// Part of the points of an image that should reappear at least in the next, where the two overlap.
+pub const FAIR_AGREEMENT: f32 = 0.3;
+
 /// The surface that depth images show.
 #[derive(Clone, Debug)]
 pub struct ScannedMesh {
@@ -103,7 +106,7 @@ pub fn scan(
     let agreement = agreement::of(&images, |pose| *pose);
     let inverted = agreement::of(&images, Pose::inverse);
     if let (Some(given), Some(inverted)) = (agreement, inverted)
-        && inverted > agreement::FAIR
+        && inverted > FAIR_AGREEMENT
         && inverted > 2.0 * given
     {
         return Err(FuseError::Convention { given, inverted });

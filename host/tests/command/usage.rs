@@ -37,13 +37,23 @@ fn wrong_usage_has_its_own_status() {
 fn help_lists_every_option_and_status() {
     let run = run!("--help");
     assert_eq!(run.status, Some(0));
-    assert!(["predict", "inspect", "Example: hangpose predict"].iter().all(|part| run.stdout.contains(part)));
+    assert!(
+        ["predict", "inspect", "scan", "Example: hangpose predict"]
+            .iter()
+            .all(|part| run.stdout.contains(part))
+    );
     let help = run!("predict", "--help").stdout;
     for option in
         ["object", "supporter", "profile", "top", "seed", "com", "json", "params", "threads", "viewpoint"]
     {
         assert!(help.contains(&format!("--{option} <")), "{option}");
     }
+    let help_of_scan = run!("scan", "--help").stdout;
+    for option in ["depth", "camera", "poses", "mask", "label", "voxel", "crop", "depth-scale", "viewpoints"]
+    {
+        assert!(help_of_scan.contains(&format!("--{option} <")), "{option}");
+    }
+    assert!(help_of_scan.contains("Exit status: 0") && help_of_scan.contains("--world-to-camera"));
     assert!(help.contains("Exit status: 0") && run!("inspect", "--help").stdout.contains("Exit status: 0"));
     assert!(run!("--version").stdout.starts_with("hangpose "));
 }

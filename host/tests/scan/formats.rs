@@ -25,12 +25,12 @@ fn is_near(a: &Pose, b: &Pose) -> bool {
     (a.to_homogeneous() - b.to_homogeneous()).amax() < 1e-5
 }
 
-fn open3d() -> Value {
+pub(crate) fn open3d() -> Value {
     let [fx, fy, cx, cy] = INTRINSICS;
     json!({ "width": SIZE[0], "height": SIZE[1], "intrinsic_matrix": [fx, 0.0, 0.0, 0.0, fy, 0.0, cx, cy, 1.0] })
 }
 
-fn bop() -> Value {
+pub(crate) fn bop() -> Value {
     let [fx, fy, cx, cy] = INTRINSICS;
     let entry = |pose: &Pose| {
         let r = rows(&pose.inverse());
@@ -84,7 +84,7 @@ fn an_open3d_trajectory() {
 }
 
 /// A trajectory at 100 Hz in which the poses of the images are those at their times.
-fn tum() -> String {
+pub(crate) fn tum() -> String {
     let mut text = String::from("# timestamp tx ty tz qx qy qz qw\n");
     for (i, pose) in poses().iter().enumerate() {
         let (t, q) = (pose.translation.vector, pose.rotation.coords);

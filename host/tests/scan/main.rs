@@ -3,4 +3,8 @@
 mod command;
 mod errors;
 mod formats;
+mod garbage;
 mod scene;
+
+#[path = "../random/mod.rs"]
+mod random;

@@ -94,7 +94,7 @@ pub fn depth_points(
                 counts.outside += 1;
                 continue;
             }
-            let window = Window { image, settings, centre: [u, v], depth: point.z };
+            let window = Window::new(image, settings, [u, v], point.z);
             let Some(normal) = window.normal().filter(|_| !window.is_flying()) else {
                 counts.flying += 1;
                 continue;

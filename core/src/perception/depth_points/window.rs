@@ -9,18 +9,35 @@ use crate::perception::depth::DepthImage;
 const RADIUS: i32 = 2;
 /// Least number of pixels that a normal is fitted to: the corner of a box shows nine of them.
 const LEAST: usize = 8;
-/// Depth difference that counts as a jump, standard deviations of the noise of two pixels.
+/// Depth difference that the noise of two pixels can make, standard deviations of that of one.
 const JUMP: f32 = 4.0;
 
 pub(super) struct Window<'a> {
-    pub(super) image: &'a DepthImage<'a>,
-    pub(super) settings: &'a DepthPointsSettings,
-    pub(super) centre: [u32; 2],
+    image: &'a DepthImage<'a>,
+    centre: [u32; 2],
     /// Depth of the centre, metres.
-    pub(super) depth: f32,
+    depth: f32,
+    /// Depth difference that the noise can make, metres.
+    noise: f32,
+    /// Depth difference from one pixel to the next on the flattest surface that is kept, metres.
+    slope: f32,
 }
 
-impl Window<'_> {
+impl<'a> Window<'a> {
+    /// The neighbourhood of a pixel of this depth, metres.
+    pub(super) fn new(
+        image: &'a DepthImage<'a>,
+        settings: &DepthPointsSettings,
+        centre: [u32; 2],
+        depth: f32,
+    ) -> Self {
+        let cosine = settings.least_cosine;
+        let tangent = libm::sqrtf(1.0 - cosine * cosine) / cosine;
+        let [x, y] = image.camera().focal();
+        let noise = JUMP * (settings.noise * depth * depth + image.scale());
+        Self { image, centre, depth, noise, slope: tangent * depth / x.min(y) }
+    }
+
     /// The unit normal in camera coordinates that faces the camera, of a plane through the pixels on the same surface;
     /// `None` if they are too few or in a line.
     ///
@@ -82,13 +99,8 @@ impl Window<'_> {
         Some((pixel, self.image.depth(pixel[0], pixel[1])?))
     }
 
-    /// The difference in depth, metres, above which a pixel so many steps away is on another surface: more than the noise
-    /// and the flattest surface that is kept can make.
+    /// The difference in depth, metres, above which a pixel so many steps away is on another surface.
     fn jump(&self, steps: i32) -> f32 {
-        let cosine = self.settings.least_cosine;
-        let slope = libm::sqrtf(1.0 - cosine * cosine) / cosine;
-        let [x, y] = self.image.camera().focal();
-        let noise = self.settings.noise * self.depth * self.depth + self.image.scale();
-        JUMP * noise + slope * self.depth * steps as f32 / x.min(y)
+        self.noise + self.slope * steps as f32
     }
 }

@@ -8,6 +8,30 @@
 //!
 //! A sparse volume stores the blocks around the surfaces. Beyond them, it cannot tell free from unknown. A dense volume
 //! stores all of its crop box, and can.
+//!
+//! ```
+//! use hangpose_core::{Monitor, geometry::{Point, Pose}};
+//! use hangpose_core::perception::depth::{DepthCamera, DepthImage};
+//! use hangpose_core::perception::{isosurface::Isosurface, volume::*};
+//!
+//! let camera = DepthCamera::new([64, 48], [60.0; 2], [31.5, 23.5], [0.0; 5])?;
+//! let wall = [500; 64 * 48]; // Half a metre away, in millimetres.
+//! let image = DepthImage::new(camera, &wall, 0.001, Pose::identity())?;
+//!
+//! let (settings, limits) = (VolumeSettings::new(0.01), VolumeLimits { blocks: 200 });
+//! let mut memory = vec![0; Volume::bytes(&limits)];
+//! let mut volume = Volume::new(&settings, &limits, &mut memory)?;
+//! volume.integrate(&image, None, &Monitor::new())?;
+//! assert!(matches!(volume.space(&Point::new(0.0, 0.0, 0.49)), Space::Surface(d) if (d - 0.01).abs() < 0.001));
+//! assert_eq!(volume.space(&Point::new(0.0, 0.0, 0.6)), Space::Unknown);
+//!
+//! let mut memory = vec![0; Isosurface::bytes(volume.blocks())];
+//! let surface = Isosurface::find(&volume, &mut memory, &Monitor::new())?;
+//! let (mut vertices, mut triangles) = (vec![[0.0; 3]; surface.vertices()], vec![[0; 3]; surface.triangles()]);
+//! surface.write(&mut vertices, &mut triangles)?;
+//! assert!(vertices.iter().all(|[_, _, z]| (z - 0.5).abs() < 0.001));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod allocate;
 pub(crate) mod blocks;

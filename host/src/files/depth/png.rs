@@ -7,8 +7,8 @@ use png::{BitDepth, ColorType, Decoder, Transformations};
 use super::super::source;
 use super::super::{FileError, Place};
 
-/// Most pixels of an image, so that a broken header does not exhaust the memory.
-const MOST_PIXELS: u64 = 1 << 27;
+/// Most bytes that a byte of compressed data stands for, so that a broken header does not reserve the memory.
+const MOST_COMPRESSION: usize = 1032;
 
 /// Content of a depth image.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -93,12 +93,12 @@ fn decode(path: &Path, remedy: &'static str) -> Result<Decoded, FileError> {
     let (width, height) = (reader.info().width, reader.info().height);
     let length = reader
         .output_buffer_size()
-        .filter(|_| u64::from(width) * u64::from(height) <= MOST_PIXELS)
-        .ok_or_else(|| malformed(path, format!("has {width} x {height} pixels, too many"), remedy))?;
-    let mut bytes = vec![0; length];
-    let info = reader.next_frame(&mut bytes).map_err(broken)?;
-    bytes.truncate(info.buffer_size());
-    Ok(Decoded { size: [width, height], colour: info.color_type, bits: info.bit_depth, bytes })
+        .filter(|length| length / MOST_COMPRESSION <= bytes.len())
+        .ok_or_else(|| malformed(path, format!("is too short for {width} x {height} pixels"), remedy))?;
+    let mut pixels = vec![0; length];
+    let info = reader.next_frame(&mut pixels).map_err(broken)?;
+    pixels.truncate(info.buffer_size());
+    Ok(Decoded { size: [width, height], colour: info.color_type, bits: info.bit_depth, bytes: pixels })
 }
 
 /// Labels of fewer than eight bits, which are packed into the bytes of each row.
