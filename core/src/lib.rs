@@ -72,6 +72,7 @@
 #![forbid(unsafe_code)]
 
 mod best;
+mod disjoint_sets;
 pub mod geometry;
 pub mod hanging;
 mod heap;

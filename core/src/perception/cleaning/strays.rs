@@ -1,5 +1,6 @@
 //! Points in the air: single ones, as flying pixels and reflections make them, and specks of a few.
 
+use crate::disjoint_sets::DisjointSets;
 use crate::geometry::{Neighbour, PointTree, Vector, least_eigenvector};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use nalgebra::Matrix3;
@@ -116,44 +117,26 @@ fn drop_specks(
     parents: &mut [u32],
     sizes: &mut [u32],
 ) {
-    for (parent, index) in parents.iter_mut().zip(0..) {
-        *parent = index;
-    }
+    let mut pieces = DisjointSets::new(parents);
     for (index, point) in tree.points().iter().enumerate() {
         let mut found = [Neighbour::default(); NEIGHBOURS];
         for neighbour in tree.k_nearest(point, &mut found) {
             let other = neighbour.index as usize;
             let reach = LINK * spacings[index].min(spacings[other]).max(overall);
             if neighbour.distance_squared <= reach * reach {
-                join(parents, index as u32, other as u32);
+                pieces.join(index as u32, other as u32);
             }
         }
     }
     sizes.fill(0);
-    for index in 0..parents.len() {
-        sizes[root(parents, index as u32) as usize] += 1;
+    for index in 0..sizes.len() {
+        sizes[pieces.find(index as u32) as usize] += 1;
     }
     let largest = sizes.iter().copied().max().unwrap_or(0);
-    for index in 0..parents.len() {
-        let size = sizes[root(parents, index as u32) as usize];
+    for index in 0..sizes.len() {
+        let size = sizes[pieces.find(index as u32) as usize];
         if size <= MAX_SPECK && size < largest {
             is_stray[tree.order()[index] as usize] = 1;
         }
     }
-}
-
-/// The first point of the piece that a point is in. Halves the paths on the way.
-fn root(parents: &mut [u32], mut index: u32) -> u32 {
-    while parents[index as usize] != index {
-        let parent = parents[index as usize];
-        parents[index as usize] = parents[parent as usize];
-        index = parent;
-    }
-    index
-}
-
-/// Makes one piece of the pieces of two points.
-fn join(parents: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(parents, a), root(parents, b));
-    parents[a.max(b) as usize] = a.min(b);
 }
