@@ -9,7 +9,7 @@ use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::Params;
 use crate::perception::cleaning::{self, Cleaned, CleaningCounts};
-use crate::perception::normals;
+use crate::perception::{far_side, normals, visibility};
 
 /// Normals shorter than this are taken as not given.
 const NO_DIRECTION: f32 = 1e-6;
@@ -23,6 +23,7 @@ pub struct Supporter<'m> {
     support: Support<'m>,
     places: SupporterPlaces<'m>,
     cleaning: CleaningCounts,
+    guessed: usize,
     normals: NormalCounts,
     work: Work,
     stopped: Option<Stop>,
@@ -43,16 +44,18 @@ pub struct NormalCounts {
 impl<'m> Supporter<'m> {
     /// Bytes of memory for any supporter within `limits`.
     pub const fn bytes(limits: &Limits) -> usize {
-        let points = limits.points;
+        let seen = limits.points;
+        let points = far_side::max_points(seen);
         let model = PointTree::bytes(points)
             .saturating_add(method::supporter_bytes())
             .saturating_add(Room::bytes(points));
         let steps = larger(
-            normals::scratch_bytes(points),
+            normals::scratch_bytes(seen),
             larger(method::supporter_scratch_bytes(points), Support::scratch_bytes(points)),
         );
-        let scratch = array_bytes::<Vector>(points)
-            .saturating_add(cleaning::scratch_bytes(points))
+        let scratch = array_bytes::<Vector>(seen)
+            .saturating_add(cleaning::scratch_bytes(seen))
+            .saturating_add(far_side::scratch_bytes(seen))
             .saturating_add(larger(PointTree::scratch_bytes(points), steps));
         model_bytes(model.saturating_add(scratch))
     }
@@ -69,26 +72,39 @@ impl<'m> Supporter<'m> {
         let mut arena = Arena::new(memory, Self::bytes(&Limits::of_points(points.len())))?;
         let mut meter = Meter::new(monitor);
 
-        let mut tree = PointTreeSlots::new(points.len(), &mut arena)?;
-        let room = Room::new(points.len(), &mut arena)?;
+        let most = far_side::max_points(points.len());
+        let mut tree = PointTreeSlots::new(most, &mut arena)?;
+        let room = Room::new(most, &mut arena)?;
         let slots = SupporterSlots::new(params, &mut arena)?;
         let mut scratch = arena.scratch();
         let given = scratch.slice::<Vector>(points.len())?;
         let renormalised = read_normals(cloud, given);
         let estimated = given.iter().filter(|normal| **normal == Vector::zeros()).count();
-        let Cleaned { normals: in_tree_order, spacings, is_on_plane: is_excluded, counts: cleaning } =
-            cleaning::clean(points, given, method::takes_cloud_as_it_is(params), &mut tree, &mut scratch)?;
-        let tree = tree.into_tree();
-        for (flag, &point) in is_excluded.iter_mut().zip(tree.order()) {
+        let is_taken_as_it_is = method::takes_cloud_as_it_is(params);
+        let mut seen = cleaning::clean(points, given, is_taken_as_it_is, &mut tree, &mut scratch)?;
+        for (flag, &point) in seen.is_excluded.iter_mut().zip(tree.tree().order()) {
             *flag |= u8::from(!cloud.may_hang_on(point as usize));
         }
-        let viewpoints = cloud.viewpoints();
-        let reversed = normals::complete(&tree, in_tree_order, viewpoints, params.up(), scratch.scratch())?;
+        let views = cloud.viewpoints();
+        let reversed = normals::complete(
+            &tree.tree(),
+            seen.normals,
+            seen.spacings,
+            views,
+            params.up(),
+            scratch.scratch(),
+        )?;
         let normals = NormalCounts { estimated, renormalised, reversed };
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
 
+        if !is_taken_as_it_is && visibility::explain(&tree.tree(), seen.normals, seen.spacings, views) {
+            seen = far_side::add(seen, views, &mut tree, &mut scratch)?;
+        }
+        let Cleaned { normals: in_tree_order, spacings, is_excluded, is_guessed, counts: cleaning } = seen;
+        let guessed = is_guessed.iter().filter(|flag| **flag > 0).count();
+        let tree = tree.into_tree();
         let support = match params.uses_mechanics() {
-            true => Support::fit(tree, in_tree_order, spacings, room, scratch.scratch())?,
+            true => Support::fit(tree, (in_tree_order, spacings, is_guessed), room, scratch.scratch())?,
             false => Support::bare(tree),
         };
         let seen = SupporterCloud { tree: &tree, points, normals: in_tree_order, is_excluded, params };
@@ -96,7 +112,7 @@ impl<'m> Supporter<'m> {
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
         }
-        Ok(Self { support, places, cleaning, normals, work: meter.work, stopped })
+        Ok(Self { support, places, cleaning, guessed, normals, work: meter.work, stopped })
     }
 
     /// The supporter as mechanics sees it.
@@ -122,6 +138,11 @@ impl<'m> Supporter<'m> {
     /// Points that were merged and dropped.
     pub fn cleaning(&self) -> CleaningCounts {
         self.cleaning
+    }
+
+    /// Points that no viewpoint saw and that were guessed: the far sides of bars and plates.
+    pub fn guessed(&self) -> usize {
+        self.guessed
     }
 
     /// What had to be done to the normals that were given.

@@ -23,13 +23,15 @@ pub(crate) struct Patch {
     pub(super) curvatures: [f32; 4],
     /// Number of straight directions: 0; 1, along; or 2, along and across.
     pub(super) straight: u32,
-    /// Bit per side at which the surface ends, and [`WIRE`](Self::WIRE).
+    /// Bit per side at which the surface ends, [`WIRE`](Self::WIRE), and [`GUESSED`](Self::GUESSED).
     pub(super) ends: u32,
 }
 
 impl Patch {
     /// Bit of [`ends`](Self::ends) that marks a wire: the patch is the whole cylinder around it.
     pub(super) const WIRE: u32 = 1 << 4;
+    /// Bit of [`ends`](Self::ends) that marks a patch of surface that was not seen but guessed.
+    pub(super) const GUESSED: u32 = 1 << 5;
 
     /// Curvatures along and across, on the sides of an offset, 1/m.
     pub(super) fn curvatures_towards(&self, [x, y]: [f32; 2]) -> [f32; 2] {

@@ -113,12 +113,11 @@ impl<'a> Support<'a> {
     }
 
     /// Chooses representatives and fits their patches. Every other point has a representative within
-    /// [`REPRESENTATIVE_SPACING`] whose normal is similar. `normals` and `spacings`, the distance between points around
-    /// each, metres, are in tree order.
+    /// [`REPRESENTATIVE_SPACING`] whose normal is similar. `normals`, `spacings`, the distance between points around
+    /// each, metres, and `is_guessed`, 1 for points that nobody saw, are in tree order.
     pub(crate) fn fit(
         tree: PointTree<'a>,
-        normals: &[Vector],
-        spacings: &[f32],
+        (normals, spacings, is_guessed): (&[Vector], &[f32], &[u8]),
         room: Room<'a>,
         mut scratch: Arena,
     ) -> Result<Self, OutOfMemory> {
@@ -138,6 +137,7 @@ impl<'a> Support<'a> {
             });
             let spacing = spacing_around(&tree, spacings, index, overall);
             patches[count] = fit_patch(&tree, normals, index, spacing.max(REPRESENTATIVE_SPACING), spacing);
+            patches[count].ends |= if is_guessed[index] > 0 { Patch::GUESSED } else { 0 };
             representatives[count] = index as u32;
             count += 1;
         }

@@ -63,7 +63,8 @@ impl Scene {
         let room = Room::new(count, &mut arena).unwrap();
         let mut spacings = vec![0.0; count];
         spacing::measure(&tree, &mut spacings);
-        let support = Support::fit(tree, &normals, &spacings, room, arena.scratch()).unwrap();
+        let support =
+            Support::fit(tree, (&normals, &spacings, &vec![0; count]), room, arena.scratch()).unwrap();
         let centre = mass.volume_centroid.expect("the test shapes are closed");
         let reach = mesh.vertices().iter().map(|v| (Point::from(*v) - centre).norm()).fold(0.0, f32::max);
         let body = Body {

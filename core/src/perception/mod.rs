@@ -3,6 +3,7 @@
 pub(crate) mod cleaning;
 pub mod depth;
 pub mod depth_points;
+pub(crate) mod far_side;
 pub mod isosurface;
 pub mod normals;
 mod orientation;
@@ -10,4 +11,5 @@ pub mod plane;
 pub mod sampling;
 #[cfg(test)]
 mod test_views;
+pub(crate) mod visibility;
 pub mod volume;

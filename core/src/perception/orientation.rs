@@ -1,7 +1,8 @@
 //! Which side of a surface is outside: turns the normals of a cloud so that they agree with each other and point out of
 //! the solid.
 
-use crate::geometry::{Neighbour, Point, PointTree, Vector, unit_or};
+use super::visibility;
+use crate::geometry::{Neighbour, Point, PointTree, Vector};
 use crate::heap::Heap;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use bytemuck::{Pod, Zeroable};
@@ -17,8 +18,6 @@ const MIN_INWARD: f32 = 0.8;
 const MAX_THICKNESS: f32 = 0.025;
 /// Cosine between opposing normals, and between a normal and the way to the opposing point.
 const OPPOSING: f32 = 0.7;
-/// Cosine of the angle to a viewpoint within which a point hides another.
-const HIDING: f32 = 0.95;
 /// Points of a piece whose votes must agree, net, for it to be reversed or kept by them: by chance fewer do.
 const MIN_VOTES: f32 = 8.0;
 
@@ -95,6 +94,7 @@ pub(crate) fn judge(tree: &PointTree, normals: &[Vector]) -> Given {
 pub(crate) fn orient(
     tree: &PointTree,
     normals: &mut [Vector],
+    spacings: &[f32],
     viewpoints: &[Point],
     up: Vector,
     mut scratch: Arena,
@@ -153,7 +153,9 @@ pub(crate) fn orient(
     for index in voters(points.len()) {
         let votes = &mut votes[piece_of[index] as usize];
         let is_free = |other: usize| piece_of[other] != piece_of[index];
-        votes.views += seen_side(tree, normals, index, viewpoints);
+        let at = (&points[index], &normals[index]);
+        let view = visibility::best_view(tree, at, spacings[index], viewpoints);
+        votes.views += view.map_or(0.0, |(_, cosine)| cosine.signum());
         votes.pairs -= opposing_side(tree, normals, index, is_free).unwrap_or(0.0);
         votes.divergence += divergence(tree, normals, index);
         votes.voters += 1.0;
@@ -217,33 +219,6 @@ fn transported(tree: &PointTree, normals: &[Vector], from: usize, to: usize) -> 
     let (normal, way) = (normals[from], tree.points()[to] - tree.points()[from]);
     let length_squared = way.norm_squared();
     if length_squared > 0.0 { normal - way * (2.0 * normal.dot(&way) / length_squared) } else { normal }
-}
-
-/// On which side of a point's normal it was seen from: 1 in front of it, -1 behind it, 0 if every viewpoint is hidden by
-/// other points. Of several, the viewpoint that looks most directly at the surface counts.
-fn seen_side(tree: &PointTree, normals: &[Vector], index: usize, viewpoints: &[Point]) -> f32 {
-    let point = tree.points()[index];
-    let mut side = 0.0_f32;
-    for viewpoint in viewpoints {
-        let way = unit_or(viewpoint - point, Vector::zeros());
-        let cosine = way.dot(&normals[index]);
-        if cosine.abs() <= side.abs() {
-            continue;
-        }
-        let mut is_hidden = false;
-        tree.for_each_within(&point, MAX_THICKNESS, |neighbour| {
-            let offset = tree.points()[neighbour.index as usize] - point;
-            let is_in_the_way = offset.dot(&way) > HIDING * libm::sqrtf(neighbour.distance_squared);
-            // Points of the surface itself are at its side of the tangent plane only by noise.
-            let is_off_surface =
-                offset.dot(&normals[index]).abs() > 0.5 * libm::sqrtf(neighbour.distance_squared);
-            is_hidden |= is_in_the_way && is_off_surface;
-        });
-        if !is_hidden {
-            side = cosine;
-        }
-    }
-    if side == 0.0 { 0.0 } else { side.signum() }
 }
 
 /// On which side of a point's normal the nearest point of an opposite surface lies: -1 behind it, as through a solid, 1

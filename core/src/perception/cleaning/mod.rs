@@ -15,18 +15,20 @@ pub(crate) const fn scratch_bytes(points: usize) -> usize {
     let kept = merge::bytes(points)
         .saturating_add(array_bytes::<f32>(points))
         .saturating_add(array_bytes::<Vector>(points))
-        .saturating_add(array_bytes::<u8>(points));
+        .saturating_add(array_bytes::<u8>(points).saturating_mul(2));
     kept.saturating_add(larger(merge::scratch_bytes(points), strays::scratch_bytes(points)))
 }
 
-/// A cloud without duplicates and strays, in the order of its tree.
+/// The points of a cloud that are left, without duplicates and strays, in the order of its tree.
 pub(crate) struct Cleaned<'s> {
     /// Unit normals, zero where none was given.
     pub(crate) normals: &'s mut [Vector],
     /// Distance between points around each point, metres.
     pub(crate) spacings: &'s [f32],
-    /// 1 for points on large planes, as walls and tables, on which nothing hangs.
-    pub(crate) is_on_plane: &'s mut [u8],
+    /// 1 for points on which nothing hangs: at first those on large planes, as walls and tables.
+    pub(crate) is_excluded: &'s mut [u8],
+    /// 1 for points that were not seen but guessed: at first none.
+    pub(crate) is_guessed: &'s [u8],
     pub(crate) counts: CleaningCounts,
 }
 
@@ -75,14 +77,15 @@ pub(crate) fn clean<'s>(
         }
     };
     let count = kept.points.len();
-    let (normals, is_on_plane) = (arena.slice::<Vector>(count)?, arena.slice::<u8>(count)?);
+    let normals = arena.slice::<Vector>(count)?;
+    let (is_excluded, is_guessed) = (arena.slice::<u8>(count)?, arena.slice::<u8>(count)?);
     for (place, &index) in slots.tree().order().iter().enumerate() {
         normals[place] = kept.normals[index as usize];
-        is_on_plane[place] = kept.is_on_plane[index as usize];
+        is_excluded[place] = kept.is_on_plane[index as usize];
     }
-    counts.on_planes = is_on_plane.iter().filter(|flag| **flag > 0).count();
+    counts.on_planes = is_excluded.iter().filter(|flag| **flag > 0).count();
     slots.rename(kept.names);
-    Ok(Cleaned { normals, spacings: &spacings[..count], is_on_plane, counts })
+    Ok(Cleaned { normals, spacings: &spacings[..count], is_excluded, is_guessed, counts })
 }
 
 #[cfg(test)]

@@ -1,0 +1,199 @@
+//! The far side of what a camera saw from one side.
+//!
+//! A bar of which only the front was seen has a back. It is guessed by symmetry: every point is mirrored through the
+//! centre of the largest ball that touches the surface there from inside, holds no other point, and stays in the shadow
+//! behind what was seen. The centres are the medial axis (Blum, "A transformation for extracting new descriptors of
+//! shape", 1967), so that a round bar gets its exact back, a wire its other half, and a strip that was seen face on a
+//! thickness like its width.
+
+use super::cleaning::Cleaned;
+use super::visibility;
+use crate::geometry::{Neighbour, Point, PointTree, PointTreeSlots, Vector, any_perpendicular};
+use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
+
+/// Largest radius of the balls, metres. Thicker things get a back that is too near, but nothing reaches around them.
+const MAX_RADIUS: f32 = 0.015;
+/// Distance by which the far side is moved away from what was seen, metres: its error, so that an object which stays clear
+/// of the guess is likely to stay clear of the truth. The noise of a good depth camera makes errors of this size in the
+/// radius of a bar of 1 cm.
+const ALLOWANCE: f32 = 0.0015;
+/// Cosine of the turn between two normals from which on the farther point bounds the ball at the nearer one. Noise moves
+/// nearer points into the ball.
+const TURNED: f32 = 0.6;
+/// Least distance of a guessed point from those that were seen, in distances between points: nearer ones are seen already.
+const APART: f32 = 1.2;
+/// Largest gap between the directions to the neighbours of a point inside a surface, radians. At an edge it is a half turn;
+/// of points at random one in a hundred has a gap of this size.
+const EDGE_GAP: f32 = 2.6;
+/// Neighbours of a point among which gaps are looked for, itself included.
+const NEIGHBOURS: usize = 16;
+/// Least cosine between a normal and the way to the camera of points that are mirrored. At the outline both sides were
+/// seen.
+const LEAST_COSINE: f32 = 0.1;
+
+/// The most points of a cloud of `points` with its far side: of a longer far side a part is left out, spread over all.
+pub(crate) const fn max_points(points: usize) -> usize {
+    points.saturating_add(points / 2)
+}
+
+/// Bytes of working memory for a cloud of `points`, some of which the result keeps.
+pub(crate) const fn scratch_bytes(points: usize) -> usize {
+    let all = max_points(points);
+    array_bytes::<Point>(all)
+        .saturating_add(array_bytes::<u32>(all).saturating_mul(2))
+        .saturating_add(array_bytes::<Vector>(all))
+        .saturating_add(array_bytes::<f32>(all))
+        .saturating_add(array_bytes::<u8>(all).saturating_mul(2))
+        .saturating_add(larger(array_bytes::<u8>(points), PointTree::scratch_bytes(all)))
+}
+
+/// Adds the far side of a cloud to `slots`, which hold the cloud and have room for [`max_points`], as far as its
+/// `viewpoints` left it unseen. Excluded points have no far side.
+pub(crate) fn add<'s>(
+    seen: Cleaned<'s>,
+    viewpoints: &[Point],
+    slots: &mut PointTreeSlots,
+    arena: &mut Arena<'s>,
+) -> Result<Cleaned<'s>, OutOfMemory> {
+    let count = seen.normals.len();
+    let most = max_points(count);
+    let points = arena.slice::<Point>(most)?;
+    // Index of the point that was seen, its own or that of the mirrored one, in the old tree and in the caller's cloud.
+    let (sources, names) = (arena.slice::<u32>(most)?, arena.slice::<u32>(most)?);
+    points[..count].copy_from_slice(slots.tree().points());
+    for (slot, index) in sources[..count].iter_mut().zip(0..) {
+        *slot = index;
+    }
+    let far = &mut FarSide {
+        points: &mut points[count..],
+        sources: &mut sources[count..],
+        count: 0,
+        stride: 1,
+        found: 0,
+    };
+    find(&slots.tree(), &seen, viewpoints, arena.scratch(), far)?;
+    let all = count + far.count;
+    for (name, &source) in names.iter_mut().zip(&sources[..all]) {
+        *name = slots.tree().order()[source as usize];
+    }
+    slots.fill(&points[..all], arena.scratch())?;
+    let (normals, spacings) = (arena.slice::<Vector>(all)?, arena.slice::<f32>(all)?);
+    let (is_excluded, is_guessed) = (arena.slice::<u8>(all)?, arena.slice::<u8>(all)?);
+    for (place, &index) in slots.tree().order().iter().enumerate() {
+        let (source, is_far) = (sources[index as usize] as usize, index as usize >= count);
+        normals[place] = if is_far { -seen.normals[source] } else { seen.normals[source] };
+        spacings[place] = seen.spacings[source];
+        is_excluded[place] = seen.is_excluded[source];
+        is_guessed[place] = u8::from(is_far);
+    }
+    slots.rename(&names[..all]);
+    Ok(Cleaned { normals, spacings, is_excluded, is_guessed, ..seen })
+}
+
+/// The points of the far side that are kept: if there are too many, every second, fourth and so on.
+struct FarSide<'a> {
+    points: &'a mut [Point],
+    sources: &'a mut [u32],
+    count: usize,
+    stride: usize,
+    found: usize,
+}
+
+impl FarSide<'_> {
+    fn push(&mut self, point: Point, source: u32) {
+        if self.found.is_multiple_of(self.stride) {
+            if self.count == self.points.len() {
+                self.stride *= 2;
+                self.count = self.count.div_ceil(2);
+                for k in 0..self.count {
+                    self.points[k] = self.points[2 * k];
+                    self.sources[k] = self.sources[2 * k];
+                }
+            }
+            if self.count < self.points.len() && self.found.is_multiple_of(self.stride) {
+                (self.points[self.count], self.sources[self.count]) = (point, source);
+                self.count += 1;
+            }
+        }
+        self.found += 1;
+    }
+}
+
+/// Finds the points of the far side, in the order of those that were seen.
+fn find(
+    tree: &PointTree,
+    seen: &Cleaned,
+    viewpoints: &[Point],
+    mut scratch: Arena,
+    far: &mut FarSide,
+) -> Result<(), OutOfMemory> {
+    let Cleaned { normals, spacings, is_excluded, .. } = seen;
+    let is_edge = scratch.slice::<u8>(normals.len())?;
+    for (index, flag) in is_edge.iter_mut().enumerate() {
+        *flag = u8::from(is_at_edge(tree, normals, index));
+    }
+    for of in (0..normals.len()).filter(|&index| is_excluded[index] == 0) {
+        let (point, normal) = (tree.points()[of], normals[of]);
+        let view = visibility::best_view(tree, (&point, &normal), spacings[of], viewpoints);
+        let Some((way, _)) = view.filter(|(_, cosine)| *cosine > LEAST_COSINE) else { continue };
+        let opposite = point - normal * (2.0 * radius(tree, normals, is_edge, of, &way));
+        let apart = APART * spacings[of];
+        if tree.nearest(&opposite).distance_squared > apart * apart {
+            far.push(opposite - normal * ALLOWANCE, of as u32);
+        }
+    }
+    Ok(())
+}
+
+/// Radius of the largest ball that touches the surface from inside at a point, holds no other point, and is hidden from
+/// the direction `way` by what was seen.
+fn radius(tree: &PointTree, normals: &[Vector], is_edge: &[u8], of: usize, way: &Vector) -> f32 {
+    let (point, normal) = (tree.points()[of], normals[of]);
+    let mut radius = MAX_RADIUS;
+    // A ball of this radius reaches no farther than its diameter.
+    tree.for_each_within(&point, 2.0 * MAX_RADIUS, |neighbour| {
+        let other = neighbour.index as usize;
+        let offset = tree.points()[other] - point;
+        let depth = -offset.dot(&normal);
+        if depth > 0.0 && normals[other].dot(&normal) < TURNED {
+            radius = radius.min(neighbour.distance_squared / (2.0 * depth));
+        }
+        if is_edge[other] > 0 {
+            radius = radius.min(radius_beside_ray(&-offset, &-normal, way));
+        }
+    });
+    radius
+}
+
+/// Radius of the ball that touches the ray through an outline. `offset` leads from the outline to where the ball touches
+/// the surface, `inwards` from there to its centre; both unit vectors but for the offset. Beyond the ray space is free.
+fn radius_beside_ray(offset: &Vector, inwards: &Vector, way: &Vector) -> f32 {
+    // Without the parts along the ray, the distance of the centre from the ray is the radius r where
+    // (1 - |b|²) r² - 2 a·b r - |a|² = 0.
+    let a = offset - way * offset.dot(way);
+    let b = inwards - way * inwards.dot(way);
+    let (square, half, constant) = (1.0 - b.norm_squared(), a.dot(&b), a.norm_squared());
+    let root = libm::sqrtf((half * half + square * constant).max(0.0));
+    // The larger root, without a difference of like numbers.
+    if half > 0.0 { (half + root) / square.max(1e-6) } else { constant / (root - half).max(1e-9) }
+}
+
+/// Whether a point is at the end of its surface: its neighbours are on one side.
+fn is_at_edge(tree: &PointTree, normals: &[Vector], index: usize) -> bool {
+    let (point, normal) = (tree.points()[index], normals[index]);
+    let ahead = any_perpendicular(normal);
+    let aside = normal.cross(&ahead);
+    let mut found = [Neighbour::default(); NEIGHBOURS];
+    let mut angles = heapless::Vec::<f32, NEIGHBOURS>::new();
+    for neighbour in tree.k_nearest(&point, &mut found) {
+        let offset = tree.points()[neighbour.index as usize] - point;
+        let is_on_surface = offset.dot(&normal).abs() < 0.8 * offset.norm();
+        if neighbour.distance_squared > 0.0 && is_on_surface {
+            let _ = angles.push(libm::atan2f(offset.dot(&aside), offset.dot(&ahead)));
+        }
+    }
+    angles.sort_unstable_by(f32::total_cmp);
+    let (Some(first), Some(last)) = (angles.first(), angles.last()) else { return false };
+    let around = core::f32::consts::TAU - (last - first);
+    angles.windows(2).map(|pair| pair[1] - pair[0]).fold(around, f32::max) > EDGE_GAP
+}
