@@ -51,14 +51,14 @@
    HANGPOSE_PREDICT_BYTES_EACH_POSE * (size_t)(poses))
 // Terms of these macros: upper bounds of the growth of the queries per vertex, triangle, sample, voxel, point and pose.
 #define HANGPOSE_OBJECT_BYTES_AT_LEAST 30720
-#define HANGPOSE_OBJECT_BYTES_EACH_VERTEX 8
+#define HANGPOSE_OBJECT_BYTES_EACH_VERTEX 24
 #define HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE 180
 #define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 312
 #define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 19
 #define HANGPOSE_SUPPORTER_BYTES_AT_LEAST 58368
-#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 314
+#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 506
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 43008
-#define HANGPOSE_PREDICT_BYTES_EACH_POINT 9
+#define HANGPOSE_PREDICT_BYTES_EACH_POINT 14
 #define HANGPOSE_PREDICT_BYTES_EACH_POSE 384
 
 // Version of the structs and functions in this header. hangpose_params_init and hangpose_check_abi refuse a
@@ -377,7 +377,8 @@ typedef struct hangpose_supporter_info {
   uint32_t struct_size;
   // HANGPOSE_WORK_LIMIT if the search for sites or contact candidates ended early, else HANGPOSE_OK.
   hangpose_status stopped;
-  // Number of points that are left of the cloud: without those that were merged and the strays.
+  // Number of points that are left of the cloud, without those that were merged and the strays, and with those that
+  // were guessed.
   uint32_t points;
   // Number of points that were merged with others at the same place.
   uint32_t points_merged;
@@ -385,6 +386,8 @@ typedef struct hangpose_supporter_info {
   uint32_t strays;
   // Number of points left on large planes, as walls and tables, on which nothing hangs.
   uint32_t points_on_planes;
+  // Number of points that no viewpoint saw and that were guessed: the far sides of bars and plates.
+  uint32_t points_guessed;
   // Number of normals that were missing or zero and were estimated from the neighbouring points.
   uint32_t normals_estimated;
   // Number of normals that were not of unit length and were normalised.
@@ -489,6 +492,9 @@ typedef struct hangpose_pose {
   uint32_t has_rest;
   // Probability that the object hangs and stays, 0 to 1.
   float probability;
+  // 1 if the pose is close to a part of the supporter that no viewpoint saw and that was guessed, else 0. Another
+  // view of the supporter would then say more.
+  uint32_t is_near_guess;
   // Rest pose: x, y, z of the origin of the object, metres, in supporter coordinates.
   float rest_position[3];
   // Rest pose: x, y, z, w of the unit quaternion that rotates object coordinates into supporter coordinates.

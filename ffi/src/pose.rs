@@ -67,6 +67,9 @@ pub struct hangpose_pose {
     pub has_rest: u32,
     /// Probability that the object hangs and stays, 0 to 1.
     pub probability: f32,
+    /// 1 if the pose is close to a part of the supporter that no viewpoint saw and that was guessed, else 0. Another
+    /// view of the supporter would then say more.
+    pub is_near_guess: u32,
     /// Rest pose: x, y, z of the origin of the object, metres, in supporter coordinates.
     pub rest_position: [f32; 3],
     /// Rest pose: x, y, z, w of the unit quaternion that rotates object coordinates into supporter coordinates.
@@ -113,6 +116,7 @@ impl From<&HangingPose> for hangpose_pose {
         if let Some(rest) = &pose.rest {
             answer.has_rest = 1;
             answer.probability = rest.probability;
+            answer.is_near_guess = u32::from(rest.is_near_guess);
             answer.rest_position = rest.pose.translation.vector.into();
             answer.rest_quaternion = rest.pose.rotation.coords.into();
             answer.sinking = rest.sinking;
@@ -152,6 +156,7 @@ impl hangpose_pose {
             quaternion: [NAN; 4],
             has_rest: 0,
             probability: NAN,
+            is_near_guess: 0,
             rest_position: [NAN; 3],
             rest_quaternion: [NAN; 4],
             sinking: NAN,

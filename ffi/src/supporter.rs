@@ -156,7 +156,8 @@ pub struct hangpose_supporter_info {
     pub struct_size: u32,
     /// HANGPOSE_WORK_LIMIT if the search for sites or contact candidates ended early, else HANGPOSE_OK.
     pub stopped: hangpose_status,
-    /// Number of points that are left of the cloud: without those that were merged and the strays.
+    /// Number of points that are left of the cloud, without those that were merged and the strays, and with those that
+    /// were guessed.
     pub points: u32,
     /// Number of points that were merged with others at the same place.
     pub points_merged: u32,
@@ -164,6 +165,8 @@ pub struct hangpose_supporter_info {
     pub strays: u32,
     /// Number of points left on large planes, as walls and tables, on which nothing hangs.
     pub points_on_planes: u32,
+    /// Number of points that no viewpoint saw and that were guessed: the far sides of bars and plates.
+    pub points_guessed: u32,
     /// Number of normals that were missing or zero and were estimated from the neighbouring points.
     pub normals_estimated: u32,
     /// Number of normals that were not of unit length and were normalised.
@@ -213,6 +216,7 @@ pub unsafe extern "C" fn hangpose_supporter_get_info(
             points_merged: cleaning.merged as u32,
             strays: cleaning.strays as u32,
             points_on_planes: cleaning.on_planes as u32,
+            points_guessed: supporter.guessed() as u32,
             normals_estimated: normals.estimated as u32,
             normals_renormalised: normals.renormalised as u32,
             normals_reversed: normals.reversed as u32,

@@ -31,9 +31,8 @@ pub fn let_go(
     params.validate()?;
     let body = object.body().ok_or(PredictError::NoDistanceField)?;
     let support = supporter.support();
-    let points = supporter.points().points().len();
     let mut arena = Arena::new(memory, predict_bytes(&supporter.limits()))?;
-    let sleeps = arena.slice::<Sleep>(Support::sleepers(points))?;
+    let sleeps = arena.slice::<Sleep>(Support::sleepers(support.patches.len()))?;
     let mut meter = Meter::new(monitor);
     let settled = swing_out((&body, support), release, &-params.up(), params, sleeps, &mut meter);
     Ok(settled.map(|settled| LetGo { fate: settled.fate, pose: settled.pose }))

@@ -23,6 +23,7 @@ pub struct Supporter<'m> {
     support: Support<'m>,
     places: SupporterPlaces<'m>,
     cleaning: CleaningCounts,
+    given: usize,
     guessed: usize,
     normals: NormalCounts,
     work: Work,
@@ -112,7 +113,16 @@ impl<'m> Supporter<'m> {
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
         }
-        Ok(Self { support, places, cleaning, guessed, normals, work: meter.work, stopped })
+        Ok(Self {
+            support,
+            places,
+            cleaning,
+            given: points.len(),
+            guessed,
+            normals,
+            work: meter.work,
+            stopped,
+        })
     }
 
     /// The supporter as mechanics sees it.
@@ -125,9 +135,9 @@ impl<'m> Supporter<'m> {
         &self.support.tree
     }
 
-    /// The limits that this supporter requires: its number of points, and zero for the rest.
+    /// The limits that this supporter requires: the number of points of its cloud, and zero for the rest.
     pub fn limits(&self) -> Limits {
-        Limits::of_points(self.points().points().len())
+        Limits::of_points(self.given)
     }
 
     /// Where something may hang, by the method that it was analysed with.

@@ -189,6 +189,10 @@ pub(super) const FILLED_RATIO: f32 = 0.7;
 /// Larger: rims are missed, and the body's normal acts where the patches' should. Smaller: contacts inside a
 /// curved patch get the patch's normal. Chosen by hand.
 pub(super) const RIM_RATIO: f32 = 0.9;
+/// Distance from guessed parts of the supporter within which the guess matters, m: the error of a guess that was wrong.
+///
+/// Larger: poses far from the guess look less probable. Smaller: poses look more probable than they are. Chosen by hand.
+pub(super) const NEAR_GUESS: f32 = 0.01;
 /// Penetration of a patch beyond which the supporter passes through the object, m.
 ///
 /// Larger: thin walls pushed through the supporter go unseen. Smaller: the errors of patches against the

@@ -23,7 +23,7 @@ mod tests;
 mod touch;
 
 pub(crate) use body::Body;
-pub(crate) use clearance::{first_within, is_off_surface};
+pub(crate) use clearance::{first_within, is_near_guess, is_off_surface};
 pub use constants::GRAVITY;
 pub use margin::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
 pub(crate) use margin::{Firmness, firmness};

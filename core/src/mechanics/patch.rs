@@ -121,6 +121,11 @@ impl Patch {
         if self.is_wire() { 1.0 / self.curvatures[2] } else { 0.0 }
     }
 
+    /// Whether the surface was not seen but guessed.
+    pub(super) fn is_guessed(&self) -> bool {
+        self.ends & Self::GUESSED != 0
+    }
+
     /// Whether the patch is that of a wire.
     pub(crate) fn is_wire(&self) -> bool {
         self.ends & Self::WIRE != 0

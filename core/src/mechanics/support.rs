@@ -73,10 +73,10 @@ impl<'a> Room<'a> {
 }
 
 impl<'a> Support<'a> {
-    /// Maximum number of patches and groups of a cloud of `points` points: the length of the working memory
-    /// of [`Sleep`](super::Sleep).
-    pub(crate) const fn sleepers(points: usize) -> usize {
-        points + Self::max_groups(points)
+    /// Number of patches and groups of a supporter of so many patches: the length of the working memory of
+    /// [`Sleep`](super::Sleep).
+    pub(crate) const fn sleepers(patches: usize) -> usize {
+        patches.saturating_add(Self::max_groups(patches))
     }
 
     const fn max_groups(points: usize) -> usize {

@@ -197,3 +197,94 @@ fn is_at_edge(tree: &PointTree, normals: &[Vector], index: usize) -> bool {
     let around = core::f32::consts::TAU - (last - first);
     angles.windows(2).map(|pair| pair[1] - pair[0]).fold(around, f32::max) > EDGE_GAP
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::memory::model_bytes;
+    use crate::perception::{cleaning, visibility};
+    use crate::random::Random;
+
+    const EYE: Point = Point::new(0.6, 0.0, 0.1);
+
+    /// The far side of points with normals, as seen from the eye.
+    fn far_side(points: &[Point], normals: &[Vector]) -> Vec<Point> {
+        let n = points.len();
+        let needed = model_bytes(
+            PointTree::bytes(max_points(n))
+                + cleaning::scratch_bytes(n)
+                + scratch_bytes(n)
+                + PointTree::scratch_bytes(n),
+        );
+        let mut memory = vec![0; needed];
+        let mut arena = Arena::new(&mut memory, needed).unwrap();
+        let mut slots = PointTreeSlots::new(max_points(n), &mut arena).unwrap();
+        let seen = cleaning::clean(points, normals, true, &mut slots, &mut arena).unwrap();
+        if !visibility::explain(&slots.tree(), seen.normals, seen.spacings, &[EYE]) {
+            return Vec::new();
+        }
+        let all = add(seen, &[EYE], &mut slots, &mut arena).unwrap();
+        let tree = slots.tree();
+        let far = tree.points().iter().zip(all.is_guessed).filter(|(_, flag)| **flag > 0);
+        far.map(|(point, _)| *point).collect()
+    }
+
+    /// Points at random on a bar along y with this radius, those that the eye sees or all.
+    fn bar(radius: f32, is_whole: bool) -> (Vec<Point>, Vec<Vector>) {
+        let mut random = Random::new(3);
+        let all = (0..6000).map(|_| {
+            let (s, c) = (std::f32::consts::TAU * random.next_f32()).sin_cos();
+            (Point::new(radius * c, 0.1 * random.next_f32(), radius * s), Vector::new(c, 0.0, s))
+        });
+        all.filter(|(p, n)| is_whole || n.dot(&(EYE - p)) > 0.2 * (EYE - p).norm()).unzip()
+    }
+
+    #[test]
+    fn a_round_bar_gets_its_back() {
+        for radius in [0.003, 0.006, 0.012] {
+            let (points, normals) = bar(radius, false);
+            let far = far_side(&points, &normals);
+            assert!(far.len() * 3 > points.len(), "{} of {}", far.len(), points.len());
+            // Away from the ends, where the bar tapers.
+            let middle: Vec<f32> =
+                far.iter().filter(|p| (0.02..0.08).contains(&p.y)).map(|p| p.x.hypot(p.z)).collect();
+            let good =
+                middle.iter().filter(|r| (**r - radius - ALLOWANCE).abs() < 0.1 * radius + 0.0005).count();
+            assert!(good * 10 > middle.len() * 8, "{good} of {} at radius {radius}", middle.len());
+            assert!(middle.iter().all(|r| *r < radius + ALLOWANCE + 0.1 * radius), "radius {radius}");
+            assert!(far.iter().all(|p| p.x < radius), "in front of radius {radius}");
+        }
+    }
+
+    #[test]
+    fn what_was_seen_from_all_sides_gets_nothing() {
+        let (points, normals) = bar(0.006, true);
+        assert!(far_side(&points, &normals).is_empty());
+    }
+
+    #[test]
+    fn a_strip_gets_a_thickness_like_its_width() {
+        // 20 mm wide, face on.
+        let mut random = Random::new(4);
+        let points: Vec<Point> = (0..2000)
+            .map(|_| Point::new(0.0, 0.1 * random.next_f32(), 0.02 * random.next_f32() - 0.01))
+            .collect();
+        let far = far_side(&points, &vec![Vector::x(); points.len()]);
+        let deepest = far.iter().map(|p| -p.x).fold(0.0, f32::max);
+        assert!((0.016..0.024).contains(&deepest), "{deepest}");
+        // It narrows towards the edges, and stays in the shadow.
+        assert!(far.iter().all(|p| -p.x - ALLOWANCE <= 2.0 * (0.0105 - p.z.abs()).max(0.0) + 0.001));
+    }
+
+    #[test]
+    fn the_ball_beside_a_ray_touches_it() {
+        // A ball that touches the plane x = 0 from behind, 4 mm from the outline of what was seen.
+        let radius = radius_beside_ray(&Vector::new(0.0, 0.0, 0.004), &-Vector::x(), &Vector::x());
+        assert!((radius - 0.004).abs() < 1e-6);
+        // Seen at 45 degrees, the shadow leans: the centre at depth r is 0.004 + r to the side of the ray.
+        let way = Vector::new(1.0, 0.0, -1.0).normalize();
+        let radius = radius_beside_ray(&Vector::new(0.0, 0.0, 0.004), &-Vector::x(), &way);
+        let centre = Vector::new(-radius, 0.0, 0.004);
+        assert!(((centre - way * centre.dot(&way)).norm() - radius).abs() < 1e-6, "{radius}");
+    }
+}

@@ -154,7 +154,7 @@ mod tests {
     fn a_collision_on_a_face_that_was_not_scanned_is_unseen() {
         let shape = cube(true);
         let cloud = sample_supporter(&shape.mesh(), 5000, 1);
-        let cloud = SeenCloud { points: cloud.points, normals: None, viewpoint: None };
+        let cloud = SeenCloud { points: cloud.points, normals: None, viewpoints: Vec::new() };
         let scan = |has_back| {
             let Solid { vertices, triangles, .. } = cube(has_back);
             Seen { surface: Surface { vertices, triangles }, cloud: cloud.clone() }

@@ -96,6 +96,11 @@ fn in_cloud(cloud: &CloudFile, position: [f64; 3]) -> [f32; 3] {
 pub(super) fn tell_of_cloud(path: &Path, supporter: &Supporter, cloud: &Cloud) {
     let CleaningCounts { strays, on_planes, .. } = supporter.cleaning();
     let all = cloud.points().len();
+    let guessed = supporter.guessed();
+    if guessed > 0 {
+        let note = "points were added where no camera saw the far side of bars and plates";
+        say("note", format_args!("{}: {guessed} {note}", path.display()));
+    }
     for (count, what) in [
         (strays, "are strays in the air and were dropped"),
         (on_planes, "are on walls or tables, which are obstacles: nothing hangs on them"),

@@ -36,6 +36,8 @@ pub(super) struct Pose<'a> {
     sinking: Option<f32>,
     clearance: Option<f32>,
     probability: Option<f32>,
+    /// Whether the pose is close to a part of the supporter that no camera saw and that was guessed.
+    is_near_guess: Option<bool>,
     margin: Option<Margin>,
     contacts: Option<&'a [Contact]>,
     /// Cost of the published matching; null where poses come from contact candidates.
@@ -154,6 +156,7 @@ impl<'a> Pose<'a> {
             sinking: rest.map(|rest| rest.sinking),
             clearance: rest.map(|rest| rest.clearance),
             probability: rest.map(|rest| rest.probability),
+            is_near_guess: rest.map(|rest| rest.is_near_guess),
             margin: rest.map(|rest| rest.margin),
             contacts: rest.map(|rest| rest.contacts()),
             position: pose.pose.translation.vector.into(),

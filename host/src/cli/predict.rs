@@ -203,8 +203,10 @@ fn in_words(rest: &Rest) -> String {
         let [x, y, z] = [c.position.x, c.position.y, c.position.z].map(|x| 1000.0 * x);
         format!(", main contact at ({x:.0}, {y:.0}, {z:.0}) mm")
     });
+    let guess =
+        if rest.is_near_guess { "; another view would show the far side, which was guessed" } else { "" };
     format!(
-        "hangs with probability {:.0} %, tolerates a tilt of {at_least}{tilt:.0} degrees or a knock of {:.1} m/s, sinks {:.1} mm after release{at}",
+        "hangs with probability {:.0} %, tolerates a tilt of {at_least}{tilt:.0} degrees or a knock of {:.1} m/s, sinks {:.1} mm after release{at}{guess}",
         100.0 * rest.probability,
         margin.knock_speed,
         1000.0 * rest.sinking,

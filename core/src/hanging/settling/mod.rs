@@ -11,11 +11,13 @@ use super::scene::Scene;
 use crate::best::Best;
 use crate::geometry::Pose;
 use crate::mechanics::{
-    Body, Fate, Settings, Settled, Sleep, Support, comes_free, firmness, is_off_surface, release_pose, settle,
+    Body, Fate, Settings, Settled, Sleep, Support, comes_free, firmness, is_near_guess, is_off_surface,
+    release_pose, settle,
 };
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
+use crate::perception::far_side;
 
 /// What became of the poses that were released.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,13 +85,13 @@ impl<'a> Settling<'a> {
     pub(super) fn new(scene: &Scene<'a>, arena: &mut Arena<'a>) -> Result<Self, PredictError> {
         let Scene { support, params, .. } = *scene;
         let body = scene.body.ok_or(PredictError::NoDistanceField)?;
-        let sleeps = arena.slice::<Sleep>(Support::sleepers(support.tree.points().len()))?;
+        let sleeps = arena.slice::<Sleep>(Support::sleepers(support.patches.len()))?;
         Ok(Self { body, support, params, sleeps, counts: SettlingCounts::default() })
     }
 
-    /// Bytes of working memory, for a supporter of `points`.
+    /// Bytes of working memory, for a supporter of `points`, whose far side has patches as well.
     pub(super) const fn bytes(points: usize) -> usize {
-        array_bytes::<Sleep>(Support::sleepers(points))
+        array_bytes::<Sleep>(Support::sleepers(far_side::max_points(points)))
     }
 
     /// Releases each of `poses`, moves those that stay to the front, the most probable first, and returns their number.
@@ -136,7 +138,7 @@ impl<'a> Settling<'a> {
             return Ok(false);
         }
         if let Some(known) = self.known(&settled.pose, poses) {
-            self.counts.firm += usize::from(known.probability >= probability::FIRM);
+            self.counts.firm += usize::from(known.is_firm());
             return Ok(true);
         }
         let Some((Release { pose, gap, sinking }, settled)) = self.find_release(settled, meter)? else {
@@ -151,10 +153,12 @@ impl<'a> Settling<'a> {
         let last = poses.next_to_go().and_then(|pose| pose.rest).map_or(0.0, |rest| rest.probability);
         let least = probability::least_tilt(last, gap).max(MIN_USEFUL_TILT);
         let firm = firmness(scene, &settled.pose, &down, params, least, self.sleeps, meter)?;
-        let rest = Rest::new(settled.pose, sinking, gap, &firm);
+        let is_near_guess =
+            is_near_guess(scene, &pose, meter)? || is_near_guess(scene, &settled.pose, meter)?;
+        let rest = Rest::new(settled.pose, (sinking, gap), is_near_guess, &firm);
         if rest.probability >= self.params.min_probability && self.known(&rest.pose, poses).is_none() {
             self.counts.probable += 1;
-            self.counts.firm += usize::from(rest.probability >= probability::FIRM);
+            self.counts.firm += usize::from(rest.is_firm());
             poses.offer(HangingPose { pose, rest: Some(rest), matched: start.matched }, is_more_probable);
         }
         Ok(true)

@@ -16,6 +16,9 @@ pub struct Rest {
     pub clearance: f32,
     /// The probability that the object hangs and stays, 0 to 1.
     pub probability: f32,
+    /// Whether the object is released or rests close to a part of the supporter that no camera saw and that was guessed. The
+    /// probability is then lower: another view of the supporter would say more.
+    pub is_near_guess: bool,
     /// How firmly the object stays.
     pub margin: Margin,
     contacts: [Contact; MAX_CONTACTS],
@@ -23,13 +26,32 @@ pub struct Rest {
 }
 
 impl Rest {
-    pub(super) fn new(pose: Pose, sinking: f32, clearance: f32, firmness: &Firmness) -> Self {
+    pub(super) fn new(
+        pose: Pose,
+        (sinking, clearance): (f32, f32),
+        is_near_guess: bool,
+        firmness: &Firmness,
+    ) -> Self {
         let Firmness { margin, contacts: bearing } = firmness;
         let mut contacts = [Contact::default(); MAX_CONTACTS];
         contacts[..bearing.len()].copy_from_slice(bearing);
-        let probability = probability::of(margin, clearance);
+        let probability = probability::of(margin, clearance) * probability::share_of_guess(is_near_guess);
         let contact_count = bearing.len() as u32;
-        Self { pose, sinking, clearance, probability, margin: *margin, contacts, contact_count }
+        Self {
+            pose,
+            sinking,
+            clearance,
+            probability,
+            is_near_guess,
+            margin: *margin,
+            contacts,
+            contact_count,
+        }
+    }
+
+    /// Whether nothing but what nobody saw keeps the pose from being certain.
+    pub(super) fn is_firm(&self) -> bool {
+        self.probability >= probability::FIRM * probability::share_of_guess(self.is_near_guess)
     }
 
     /// The contacts that carry the object at rest.

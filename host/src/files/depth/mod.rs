@@ -197,7 +197,7 @@ fn check_label(frames: &[ScanFrame], pattern: &str, label: u8) -> Result<(), Sca
 /// The numbers of a line in double precision; `Err` is the reason for an error message.
 fn numbers(line: &str) -> Result<Vec<f64>, String> {
     let parse = |word: &str| {
-        let not_finite = || number(word).map(f64::from);
+        let not_finite = || number(word);
         word.parse()
             .ok()
             .or_else(not_finite)
