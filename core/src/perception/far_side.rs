@@ -23,10 +23,13 @@ const TURNED: f32 = 0.6;
 /// Least distance of a guessed point from those that were seen, in distances between points: nearer ones are seen already.
 const APART: f32 = 1.2;
 /// Largest gap between the directions to the neighbours of a point inside a surface, radians. At an edge it is a half turn;
-/// of points at random one in a hundred has a gap of this size.
+/// of points at random one in six thousand has a gap of this size.
 const EDGE_GAP: f32 = 2.6;
+/// Distance by which a ball may reach beyond an outline, in distances between points: the last points of a surface are
+/// that far inside its outline on average.
+const OUTLINE_SLACK: f32 = 0.5;
 /// Neighbours of a point among which gaps are looked for, itself included.
-const NEIGHBOURS: usize = 16;
+const NEIGHBOURS: usize = 24;
 /// Least cosine between a normal and the way to the camera of points that are mirrored. At the outline both sides were
 /// seen.
 const LEAST_COSINE: f32 = 0.1;
@@ -136,7 +139,7 @@ fn find(
         let (point, normal) = (tree.points()[of], normals[of]);
         let view = visibility::best_view(tree, (&point, &normal), spacings[of], viewpoints);
         let Some((way, _)) = view.filter(|(_, cosine)| *cosine > LEAST_COSINE) else { continue };
-        let opposite = point - normal * (2.0 * radius(tree, normals, is_edge, of, &way));
+        let opposite = point - normal * (2.0 * radius(tree, seen, is_edge, of, &way));
         let apart = APART * spacings[of];
         if tree.nearest(&opposite).distance_squared > apart * apart {
             far.push(opposite - normal * ALLOWANCE, of as u32);
@@ -147,7 +150,8 @@ fn find(
 
 /// Radius of the largest ball that touches the surface from inside at a point, holds no other point, and is hidden from
 /// the direction `way` by what was seen.
-fn radius(tree: &PointTree, normals: &[Vector], is_edge: &[u8], of: usize, way: &Vector) -> f32 {
+fn radius(tree: &PointTree, seen: &Cleaned, is_edge: &[u8], of: usize, way: &Vector) -> f32 {
+    let Cleaned { normals, spacings, .. } = seen;
     let (point, normal) = (tree.points()[of], normals[of]);
     let mut radius = MAX_RADIUS;
     // A ball of this radius reaches no farther than its diameter.
@@ -159,20 +163,23 @@ fn radius(tree: &PointTree, normals: &[Vector], is_edge: &[u8], of: usize, way: 
             radius = radius.min(neighbour.distance_squared / (2.0 * depth));
         }
         if is_edge[other] > 0 {
-            radius = radius.min(radius_beside_ray(&-offset, &-normal, way));
+            let slack = OUTLINE_SLACK * spacings[other];
+            radius = radius.min(radius_beside_ray(&-offset, &-normal, way, slack));
         }
     });
     radius
 }
 
-/// Radius of the ball that touches the ray through an outline. `offset` leads from the outline to where the ball touches
-/// the surface, `inwards` from there to its centre; both unit vectors but for the offset. Beyond the ray space is free.
-fn radius_beside_ray(offset: &Vector, inwards: &Vector, way: &Vector) -> f32 {
-    // Without the parts along the ray, the distance of the centre from the ray is the radius r where
-    // (1 - |b|²) r² - 2 a·b r - |a|² = 0.
+/// Radius of the ball that reaches beyond the ray through an outline by `slack` metres. `offset` leads from the outline to
+/// where the ball touches the surface, metres; the unit vector `inwards` from there to its centre. Beyond the ray space is
+/// free.
+fn radius_beside_ray(offset: &Vector, inwards: &Vector, way: &Vector, slack: f32) -> f32 {
+    // Without the parts along the ray, the distance of the centre from the ray is r - s where
+    // (1 - |b|²) r² - 2 (a·b + s) r - (|a|² - s²) = 0.
     let a = offset - way * offset.dot(way);
     let b = inwards - way * inwards.dot(way);
-    let (square, half, constant) = (1.0 - b.norm_squared(), a.dot(&b), a.norm_squared());
+    let (square, half) = (1.0 - b.norm_squared(), a.dot(&b) + slack);
+    let constant = (a.norm_squared() - slack * slack).max(0.0);
     let root = libm::sqrtf((half * half + square * constant).max(0.0));
     // The larger root, without a difference of like numbers.
     if half > 0.0 { (half + root) / square.max(1e-6) } else { constant / (root - half).max(1e-9) }
@@ -272,18 +279,19 @@ mod tests {
         let far = far_side(&points, &vec![Vector::x(); points.len()]);
         let deepest = far.iter().map(|p| -p.x).fold(0.0, f32::max);
         assert!((0.016..0.024).contains(&deepest), "{deepest}");
-        // It narrows towards the edges, and stays in the shadow.
-        assert!(far.iter().all(|p| -p.x - ALLOWANCE <= 2.0 * (0.0105 - p.z.abs()).max(0.0) + 0.001));
+        // It stays in the shadow: the way to the eye passes through the strip.
+        let crossing = |p: &Point| p.z - p.x * (EYE.z - p.z) / (EYE.x - p.x);
+        assert!(far.iter().all(|p| crossing(p).abs() < 0.0115));
     }
 
     #[test]
     fn the_ball_beside_a_ray_touches_it() {
         // A ball that touches the plane x = 0 from behind, 4 mm from the outline of what was seen.
-        let radius = radius_beside_ray(&Vector::new(0.0, 0.0, 0.004), &-Vector::x(), &Vector::x());
+        let radius = radius_beside_ray(&Vector::new(0.0, 0.0, 0.004), &-Vector::x(), &Vector::x(), 0.0);
         assert!((radius - 0.004).abs() < 1e-6);
         // Seen at 45 degrees, the shadow leans: the centre at depth r is 0.004 + r to the side of the ray.
         let way = Vector::new(1.0, 0.0, -1.0).normalize();
-        let radius = radius_beside_ray(&Vector::new(0.0, 0.0, 0.004), &-Vector::x(), &way);
+        let radius = radius_beside_ray(&Vector::new(0.0, 0.0, 0.004), &-Vector::x(), &way, 0.0);
         let centre = Vector::new(-radius, 0.0, 0.004);
         assert!(((centre - way * centre.dot(&way)).norm() - radius).abs() < 1e-6, "{radius}");
     }
