@@ -8,7 +8,6 @@ use hangpose::geometry::{Point, Pose, Vector};
 use hangpose::perception::depth::{DepthCamera, DepthImage};
 use hangpose::perception::depth_points::{DepthPointsSettings, depth_points};
 use hangpose::perception::isosurface::Isosurface;
-use hangpose::perception::plane::{PlaneSettings, dominant_plane};
 use hangpose::perception::volume::{Space, Volume, VolumeLimits, VolumeSettings};
 use nalgebra::{Quaternion, UnitQuaternion};
 
@@ -80,17 +79,12 @@ fn a_mesh_and_what_is_known_of_space_have_the_same_bytes_everywhere() {
 }
 
 #[test]
-fn points_normals_and_their_plane_have_the_same_bytes_everywhere() {
+fn points_and_normals_have_the_same_bytes_everywhere() {
     let (camera, pose, depths) = views().swap_remove(2);
     let image = DepthImage::new(camera, &depths, 1e-4, pose).unwrap();
     let (mut points, mut normals) = (vec![[0.0_f32; 3]; depths.len()], vec![[0.0_f32; 3]; depths.len()]);
     let settings = DepthPointsSettings::default();
     let count = depth_points(&image, None, &settings, &mut points, &mut normals).unwrap().points;
-    let mut marks = vec![false; count];
-    let plane = dominant_plane(&points[..count], &PlaneSettings::default(), &mut marks).unwrap().unwrap();
-    assert!(plane.points > count / 2 && plane.points < count);
     let numbers = points[..count].iter().chain(&normals[..count]).flatten().map(|x| x.to_bits());
-    let plane = plane.normal.iter().chain([&plane.offset]).map(|x| x.to_bits());
-    let expected = ["73845bb4", "d92ada84"];
-    assert_eq!([hash(numbers), hash(plane.chain(marks.iter().map(|mark| u32::from(*mark))))], expected);
+    assert_eq!(hash(numbers), "73845bb4");
 }

@@ -7,7 +7,7 @@ pub(crate) mod far_side;
 pub mod isosurface;
 pub mod normals;
 mod orientation;
-pub mod plane;
+mod plane;
 pub mod sampling;
 #[cfg(test)]
 mod test_views;

@@ -1,9 +1,9 @@
 //! Large planes, as walls and tables: things to collide with, not to hang on.
 
-use crate::geometry::{Point, Vector, any_perpendicular, least_eigenvector};
+use crate::geometry::{Point, Vector, any_perpendicular};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::perception::plane::Plane;
 use crate::random::Random;
-use nalgebra::Matrix3;
 
 // Physics: what a large plane is.
 
@@ -24,12 +24,10 @@ const TOLERANCE: f32 = 0.004;
 
 /// Points among which planes are searched.
 const PROBES: usize = 2048;
-/// Triples of points that are tried for each plane. One in 27 lies on a plane that has a third of the points.
-const TRIALS: usize = 192;
 /// Largest number of planes.
 const MAX_PLANES: usize = 8;
-/// Least share of the probes on a plane that is looked at.
-const MIN_SHARE: f32 = 0.04;
+/// A plane that is looked at has more than one in so many of the probes.
+const MIN_SHARE: usize = 25;
 /// Cells of the grid along an edge: with [`CELL`], it spans 3.2 m.
 const CELLS: usize = 128;
 
@@ -39,9 +37,8 @@ pub(super) const fn scratch_bytes() -> usize {
 }
 
 /// A plane with a grid on it.
-struct Plane {
-    origin: Point,
-    normal: Vector,
+struct Grid {
+    plane: Plane,
     axes: [Vector; 2],
 }
 
@@ -55,18 +52,19 @@ pub(super) fn mark(points: &[Point], is_on_plane: &mut [u8], mut scratch: Arena)
     }
     let mut random = Random::new(0);
     for _ in 0..MAX_PLANES {
-        let Some(plane) = Plane::search(probes, MIN_SHARE * count as f32, &mut random) else { break };
-        plane.fill(points, cells);
+        let Some(plane) = Plane::search(probes, TOLERANCE, count / MIN_SHARE, &mut random) else { break };
+        let grid = Grid::on(plane);
+        grid.fill(points, cells);
         if mark_squares(cells) {
             for (flag, point) in is_on_plane.iter_mut().zip(points) {
-                *flag |= u8::from(plane.cell(point).is_some_and(|cell| is_in_or_beside_square(cells, cell)));
+                *flag |= u8::from(grid.cell(point).is_some_and(|cell| is_in_or_beside_square(cells, cell)));
             }
         }
         // The next plane is searched among the other probes.
         let mut left = 0;
         for index in 0..probes.len() {
             let probe = probes[index];
-            if !plane.is_near(&probe) {
+            if !grid.is_near(&probe) {
                 probes[left] = probe;
                 left += 1;
             }
@@ -76,36 +74,14 @@ pub(super) fn mark(points: &[Point], is_on_plane: &mut [u8], mut scratch: Arena)
     Ok(())
 }
 
-impl Plane {
-    /// The plane with the most points, if there are more than `least`.
-    fn search(points: &[Point], least: f32, random: &mut Random) -> Option<Self> {
-        let (mut best, mut most) = (None, least);
-        if points.len() < 3 {
-            return None;
-        }
-        for _ in 0..TRIALS {
-            let [a, b, c] = core::array::from_fn(|_| points[random.next_u32() as usize % points.len()]);
-            let Some(normal) = (b - a).cross(&(c - a)).try_normalize(1e-9) else { continue };
-            let count = points.iter().filter(|p| (*p - a).dot(&normal).abs() < TOLERANCE).count() as f32;
-            if count > most {
-                (best, most) = (Some((a, normal)), count);
-            }
-        }
-        let (mut origin, mut normal) = best?;
-        // Twice, because the better plane has other points.
-        for _ in 0..2 {
-            let on = || points.iter().filter(|p| (*p - origin).dot(&normal).abs() < TOLERANCE);
-            let count = on().count() as f32;
-            let mean = on().map(|p| p - origin).sum::<Vector>() / count;
-            let spread: Matrix3<f32> = on().map(|p| p - origin - mean).map(|o| o * o.transpose()).sum();
-            (origin, normal) = (origin + mean, least_eigenvector(spread));
-        }
-        let ahead = any_perpendicular(normal);
-        Some(Self { origin, normal, axes: [ahead, normal.cross(&ahead)] })
+impl Grid {
+    fn on(plane: Plane) -> Self {
+        let ahead = any_perpendicular(plane.normal);
+        Self { plane, axes: [ahead, plane.normal.cross(&ahead)] }
     }
 
     fn is_near(&self, point: &Point) -> bool {
-        (point - self.origin).dot(&self.normal).abs() < TOLERANCE
+        self.plane.distance(point) < TOLERANCE
     }
 
     /// The cell of a point on the plane.
@@ -113,7 +89,7 @@ impl Plane {
         if !self.is_near(point) {
             return None;
         }
-        let [x, y] = self.axes.map(|axis| libm::floorf((point - self.origin).dot(&axis) / CELL));
+        let [x, y] = self.axes.map(|axis| libm::floorf((point - self.plane.origin).dot(&axis) / CELL));
         let half = (CELLS / 2) as f32;
         let is_inside = |x: f32| x >= -half && x < half;
         (is_inside(x) && is_inside(y)).then(|| (y + half) as usize * CELLS + (x + half) as usize)
