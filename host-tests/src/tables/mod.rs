@@ -2,6 +2,7 @@
 
 mod calibration;
 pub mod case;
+mod cause;
 mod loss;
 pub mod proportion;
 pub mod real;

@@ -1,6 +1,7 @@
 //! Evaluates the cases on several threads and writes each row when it is complete.
 
 use super::case::{Case, Fit};
+use super::cause::cause;
 use super::loss::Loss;
 use super::row::{Failure, Outcome, Row};
 use super::search::finds_a_pose;
@@ -188,7 +189,7 @@ fn judge(case: &Case, profile: &str, params: &Params, scan: &Option<Spec>, optio
             }
         }
         if scan.is_some() && outcomes.is_empty() {
-            loss = Loss::of(&outcome, &rest, &case.object, &case.supporter, &seen);
+            loss = cause(&outcome, &rest, &case.object, &case.supporter, &seen);
         }
         outcomes.push(outcome);
         if outcome.success() && !options.all {
