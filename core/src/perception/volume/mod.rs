@@ -117,7 +117,7 @@ impl<'m> Volume<'m> {
         Ok(Self { settings: *settings, extent, blocks, voxels })
     }
 
-    /// Fuses an image. Pixels without a depth say nothing. With a `mask`, surfaces are taken only from the pixels of its
+    /// Fuses an image. Pixels without a depth say nothing, unless [`VolumeSettings::missing_is_free`]. With a `mask`, surfaces are taken only from the pixels of its
     /// label; the others still show where space is free.
     ///
     /// A call that returns an error leaves the volume as it was. A pixel with a surface counts as one ray of the work
