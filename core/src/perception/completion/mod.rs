@@ -3,7 +3,8 @@
 //! A guess has to fit into what no camera saw free. It is the union of balls: around each unknown voxel, the largest ball
 //! that fits between what was seen free belongs to the object if it hangs on a surface that was seen. It does not if it
 //! only touches the border of the shadow that the object throws. So a round bar seen from one side becomes a full round
-//! bar, what was seen all around stays as it is, and a shadow stays empty.
+//! bar, what was seen all around stays as it is, and a shadow stays empty. A flat surface does not tell how thick it is:
+//! behind it, balls are at most as thick as the settings allow, unless surfaces hold them from two sides.
 //!
 //! The cameras must have seen beside the object: behind it there is a wall, or
 //! [`missing_is_free`](super::volume::VolumeSettings::missing_is_free).
@@ -12,12 +13,14 @@ mod balls;
 mod error;
 mod grid;
 mod room;
+mod settings;
 #[cfg(test)]
 mod tests;
 mod transform;
 
 pub use error::CompletionError;
 pub use room::room;
+pub use settings::CompletionSettings;
 
 use super::volume::Volume;
 use super::volume::blocks::{BLOCK, BLOCK_VOXELS};
@@ -32,23 +35,6 @@ use transform::{Line, transform};
 /// Depth behind a surface up to which it is certain, voxels: both ends of each edge that the surface crosses, and a little
 /// noise. Deeper, a camera only assumes that what it sees is not thinner than the truncation.
 const CERTAIN: f32 = 1.5;
-
-/// How far a guess may go.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CompletionSettings {
-    /// Greatest thickness behind a surface that was seen from one side only and does not curve around what is behind it,
-    /// metres. A plate seen face on gets this thickness, unless it is narrower.
-    pub thickness: f32,
-    /// Greatest radius of a ball that surfaces hold from two sides, metres. A bar of a greater radius stays open.
-    pub radius: f32,
-}
-
-impl Default for CompletionSettings {
-    /// Thickness 20 mm, radius 60 mm.
-    fn default() -> Self {
-        Self { thickness: 0.02, radius: 0.06 }
-    }
-}
 
 /// What was guessed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -107,7 +93,8 @@ impl Volume<'_> {
             return Err(CompletionError::Settings { thickness, radius });
         }
         let voxel = self.settings().voxel;
-        let bounds = Bounds { one_sided: thickness / 2.0 / voxel, radius: radius / voxel };
+        let one_sided = thickness / 2.0 / voxel;
+        let bounds = Bounds { one_sided, radius: one_sided.max(radius / voxel) };
         let mut work = Work::new(self, memory)?;
         work.classify(self);
         work.find_gaps(self);

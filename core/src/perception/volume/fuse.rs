@@ -15,6 +15,14 @@ const BESIDE: f32 = OUTLINE / 2.0;
 /// Distance between the pixels with a depth on both sides of pixels without, up to which those between them are taken for
 /// lost, pixels. Measurements fail in narrower stretches: at edges, and where a curved surface turns away.
 const LOST: i32 = 8;
+/// Difference in depth up to which a pixel supports its neighbour, parts of the depth, besides the truncation: the noise of
+/// depth cameras.
+const SUPPORT: f32 = 0.01;
+/// Number of the eight pixels around one that must support it. A pixel with fewer is a flying pixel between two surfaces.
+const SUPPORTING: usize = 2;
+/// Weight of a pixel that sees nothing against one with a depth. It decides only where no image shows a surface: a surface
+/// that other images show may return nothing at a grazing angle.
+const NOTHING_SEEN: f32 = 1.0 / 32.0;
 const ROW: usize = BLOCK as usize;
 
 /// One image against the blocks of a volume.
@@ -157,7 +165,10 @@ impl<'a> Fusion<'a> {
             raw => f32::from(raw) * self.image.scale(),
         };
         let distance = surface - depth;
-        let weight = weight(inverse_depth);
+        let weight = match surface {
+            f32::INFINITY => (NOTHING_SEEN * weight(inverse_depth)).max(1.0),
+            _ => weight(inverse_depth),
+        };
         if distance >= self.truncation {
             // Free, whatever the pixel shows. Beside an outline, the surface is nearer than along the ray.
             let is_beside = self.is_beside_surface([u, v], depth, inverse_depth);
@@ -167,6 +178,7 @@ impl<'a> Fusion<'a> {
         if distance <= -self.truncation
             || surface > self.max_depth
             || self.mask.is_some_and(|mask| !mask.holds(pixel))
+            || !self.is_supported([u, v], raw)
             || (distance < -self.voxel && self.is_near_outline([u, v], raw, inverse_depth))
         {
             return false;
@@ -175,6 +187,26 @@ impl<'a> Fusion<'a> {
         // Behind the surface, trust ends with the truncation, so that thin walls keep their other side.
         voxel.observe(part, (weight * (1.0 + part.min(0.0))).max(1.0));
         true
+    }
+
+    /// Whether the pixels around one show the same surface.
+    #[inline]
+    fn is_supported(&self, [u, v]: [u32; 2], raw: u16) -> bool {
+        let [width, height] = self.image.camera().size();
+        let raw = f32::from(raw);
+        let limit = self.jump + SUPPORT * raw;
+        let mut supporting = 0;
+        for v in v.saturating_sub(1)..=v.saturating_add(1).min(height - 1) {
+            for u in u.saturating_sub(1)..=u.saturating_add(1).min(width - 1) {
+                let other = f32::from(self.image.depths()[v as usize * width as usize + u as usize]);
+                supporting += usize::from((other - raw).abs() <= limit);
+                // The pixel itself is among them.
+                if supporting > SUPPORTING {
+                    return true;
+                }
+            }
+        }
+        false
     }
 
     /// Whether the depth jumps back close to a pixel. What is behind such a pixel borders on what is seen free beside it;

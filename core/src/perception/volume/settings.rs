@@ -31,7 +31,8 @@ pub struct VolumeSettings {
     pub max_depth: f32,
     /// Whether a camera sees past everything at pixels without a depth, except for gaps of up to 7 pixels between pixels
     /// with one. It holds for an object that is held alone, with nothing behind it within the camera's range. Where a
-    /// surface returns no light, because it absorbs or mirrors it or is seen at a grazing angle, it is taken for free space.
+    /// surface returns no light, because it absorbs or mirrors it or is seen at a grazing angle, it is taken for free space
+    /// if no other image shows it.
     pub missing_is_free: bool,
 }
 
