@@ -25,7 +25,7 @@ mod scan;
 
 pub use analyze::{LIMITS, TooLarge, analyze_object, analyze_supporter, predict_poses, sample_supporter};
 pub use hangpose_core::*;
-pub use scan::{FAIR_AGREEMENT, FuseError, ScannedMesh, scan};
+pub use scan::{FAIR_AGREEMENT, FuseError, ScannedMesh, complete_scan, scan};
 
 /// Compiles the Rust code of the README.
 #[cfg(doctest)]

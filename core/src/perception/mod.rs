@@ -1,6 +1,7 @@
 //! From what a sensor or a file gives to what the method works on.
 
 pub(crate) mod cleaning;
+pub mod completion;
 pub mod depth;
 pub mod depth_points;
 pub(crate) mod far_side;

@@ -17,7 +17,8 @@ struct Arguments {
     #[arg(long, value_delimiter = ',', default_value = "paper,default")]
     profile: Vec<Profile>,
     /// Comma-separated scans on which to predict, instead of on the exact shapes: numbers of depth images of the object
-    /// and of the supporter, such as 24+3, with an s for sensible single images, such as 1+1s. With 0 images, the exact
+    /// and of the supporter, such as 24+3, with an s for sensible single images, such as 1+1s, and
+    /// with an o for meshes that are left open where no image shows the object, such as 1+1o. With 0 images, the exact
     /// shape is given. The tables go to the console.
     #[arg(long, value_delimiter = ',')]
     scan: Vec<Spec>,

@@ -5,11 +5,8 @@
 mod cloud;
 mod fuse;
 mod sensor;
-mod sheet;
 mod spec;
-mod tetrahedra;
 mod views;
-mod volume;
 
 pub use cloud::{SeenCloud, cloud};
 pub use fuse::{Surface, fuse};

@@ -11,7 +11,8 @@ use std::str::FromStr;
 /// Distance around the bars of a supporter that its images show at least, m: most of an object that hangs there.
 const AROUND_BARS: f32 = 0.08;
 
-/// Numbers of images of the object and of the supporter. Its text is `24+3`, or `1+1s` for sensible single images. Of
+/// Numbers of images of the object and of the supporter. Its text is `24+3`, or `1+1s` for sensible single images, and `1+1o` for an
+/// object's mesh that is left open where no image shows it. Of
 /// what has no images, as in `24+0`, the exact shape is given, which shows whose scan a failure comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spec {
@@ -22,11 +23,15 @@ pub struct Spec {
     /// Whether a single image is taken from where somebody would take it: through an opening of the object, in front of
     /// the supporter. Otherwise its direction is random.
     pub is_sensible: bool,
+    /// Whether the object's mesh is left open where no image shows it. Otherwise it is completed.
+    pub is_open: bool,
 }
 
 impl fmt::Display for Spec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}+{}{}", self.object, self.supporter, if self.is_sensible { "s" } else { "" })
+        let [sensible, open] =
+            [(self.is_sensible, "s"), (self.is_open, "o")].map(|(is, text)| if is { text } else { "" });
+        write!(f, "{}+{}{sensible}{open}", self.object, self.supporter)
     }
 }
 
@@ -34,11 +39,12 @@ impl FromStr for Spec {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let counts = text.strip_suffix('s').unwrap_or(text);
-        let counts = counts.split_once('+').map(|(object, supporter)| [object.parse(), supporter.parse()]);
+        let shut = text.strip_suffix('o').unwrap_or(text);
+        let plain = shut.strip_suffix('s').unwrap_or(shut);
+        let counts = plain.split_once('+').map(|(object, supporter)| [object.parse(), supporter.parse()]);
         match counts {
             Some([Ok(object), Ok(supporter)]) => {
-                Ok(Self { object, supporter, is_sensible: text.ends_with('s') })
+                Ok(Self { object, supporter, is_sensible: plain != shut, is_open: shut != text })
             }
             _ => {
                 Err("give the numbers of images of the object and of the supporter, such as 24+3 or 1+1s"
@@ -90,10 +96,10 @@ mod tests {
 
     #[test]
     fn specs_have_one_text_each() {
-        for text in ["24+3", "1+1s", "24+0"] {
+        for text in ["24+3", "1+1s", "24+0", "1+0o", "3+1so"] {
             assert_eq!(text.parse::<Spec>().unwrap().to_string(), text);
         }
-        for text in ["", "24", "-1+1", "1+x", "1+1ss", "s"] {
+        for text in ["", "24", "-1+1", "1+x", "1+1ss", "1+1os", "s"] {
             assert!(text.parse::<Spec>().is_err(), "{text}");
         }
     }

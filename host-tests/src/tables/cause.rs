@@ -44,7 +44,11 @@ pub(super) fn cause(
 
 /// Whether the scan lacks most of the surface of the object, or of the supporter, where the two collide.
 fn is_unseen(pose: &Pose, object: &Solid, supporter: &Solid, seen: &Seen) -> bool {
-    let scanned = surface(&seen.surface.vertices, &seen.surface.triangles);
+    let scanned = seen.surface.shown();
+    if scanned.is_empty() {
+        return true;
+    }
+    let scanned = surface(&seen.surface.vertices, &scanned);
     let is_scanned = |point: &Point3<f32>| {
         scanned.distance_to_local_point(math::Vector::from_array((*point).into()), false) < UNSEEN
     };
@@ -126,7 +130,10 @@ mod tests {
         let cloud = SeenCloud { points: cloud.points, normals: None, viewpoints: Vec::new() };
         let scan = |has_back| {
             let Solid { vertices, triangles, .. } = cube(has_back);
-            Seen { surface: Surface { vertices, triangles }, cloud: cloud.clone() }
+            Seen {
+                surface: Surface { seen: vec![1; vertices.len()], vertices, triangles },
+                cloud: cloud.clone(),
+            }
         };
         let outcome = Outcome::unclear(0.001);
         // The object's face towards +x or -x is 1 mm within the supporter.

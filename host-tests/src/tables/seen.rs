@@ -4,6 +4,7 @@ use super::case::Case;
 use crate::scan::{SeenCloud, Shot, Spec, Surface, cloud, fuse};
 use crate::shapes::Random;
 use hangpose::geometry::{Cloud, CloudError, Mesh, MeshError};
+use hangpose::perception::completion::CompletionSettings;
 use hangpose::perception::depth::DepthImage;
 
 /// The object's mesh and the supporter's cloud.
@@ -21,19 +22,20 @@ impl Seen {
         let cloud = case.supporter_cloud();
         let (vertices, triangles) = (case.object.vertices.clone(), case.object.triangles.clone());
         Self {
-            surface: Surface { vertices, triangles },
+            surface: Surface { seen: vec![1; vertices.len()], vertices, triangles },
             cloud: SeenCloud { points: cloud.points, normals: cloud.normals, viewpoints: Vec::new() },
         }
     }
 
-    /// A scan. Its random numbers depend on nothing but the pair and the numbers of images.
+    /// A scan. Its random numbers depend on nothing but the pair, the numbers of images and whether they are sensible.
     pub(super) fn scanned(case: &Case, spec: &Spec) -> Self {
-        let mut random = Random::named(&format!("{} {spec}", case.name), case.seed);
+        let images_taken = Spec { is_open: false, ..*spec };
+        let mut random = Random::named(&format!("{} {images_taken}", case.name), case.seed);
         let mut seen = Self::exactly(case);
         let object = spec.shoot_object(&case.object, &case.openings, &mut random);
         let supporter = spec.shoot_supporter(&case.supporter, &case.bars, &mut random);
         if spec.object > 0 {
-            seen.surface = fuse(&images(&object));
+            seen.surface = fuse(&images(&object), (!spec.is_open).then_some(&CompletionSettings::default()));
         }
         if spec.supporter > 0 {
             seen.cloud = cloud(&images(&supporter));

@@ -144,6 +144,10 @@ pub(crate) struct ScanArguments {
     /// Depth beyond which surfaces are ignored, metres.
     #[arg(long, value_name = "METRES", default_value_t = 5.0, value_parser = parse_scale)]
     max_depth: f32,
+    /// Guess what no image shows, so that the mesh is closed. The object must be held alone: pixels without a depth count as
+    /// seen through.
+    #[arg(long)]
+    complete: bool,
     /// The mesh as PLY; - for standard output.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,

@@ -6,8 +6,9 @@ use super::{ScanArguments, json, progress};
 use anyhow::{Context, Result, anyhow, bail};
 use hangpose::files::depth::{ScanError, ScanSources, read_scan};
 use hangpose::files::ply_bytes;
+use hangpose::perception::completion::CompletionSettings;
 use hangpose::perception::volume::VolumeSettings;
-use hangpose::{FAIR_AGREEMENT, FuseError, Monitor};
+use hangpose::{FAIR_AGREEMENT, FuseError, Monitor, complete_scan};
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -38,7 +39,10 @@ pub(crate) fn run(arguments: &ScanArguments) -> Result<ExitCode> {
     files.notes.iter().for_each(|note| say("note", note));
     let monitor = Monitor::new();
     let read = start.elapsed().as_secs_f64();
-    let mesh = progress::show_while(&[&monitor], || hangpose::scan(&files.frames, &settings, &monitor));
+    let mesh = progress::show_while(&[&monitor], || match arguments.complete {
+        true => complete_scan(&files.frames, &settings, &CompletionSettings::default(), &monitor),
+        false => hangpose::scan(&files.frames, &settings, &monitor),
+    });
     let mesh = mesh.map_err(|error| match (&error, arguments.world_to_camera) {
         (FuseError::Convention { .. }, false) => anyhow!("{error}: pass --world-to-camera"),
         (FuseError::Convention { .. }, true) => anyhow!("{error}: leave out --world-to-camera"),

@@ -5,6 +5,7 @@ mod agreement;
 use crate::files::depth::ScanFrame;
 use hangpose_core::Monitor;
 use hangpose_core::geometry::{Aabb, Point, Pose};
+use hangpose_core::perception::completion::{Completion, CompletionError, CompletionSettings, room};
 use hangpose_core::perception::depth::{DepthImage, DepthImageError};
 use hangpose_core::perception::isosurface::{Isosurface, IsosurfaceError};
 use hangpose_core::perception::volume::{Volume, VolumeError, VolumeLimits, VolumeSettings};
@@ -26,6 +27,8 @@ pub struct ScannedMesh {
     pub vertices: Vec<[f32; 3]>,
     /// Vertex indices, counter-clockwise seen from free space.
     pub triangles: Vec<[u32; 3]>,
+    /// For each vertex 1 if an image shows the surface there, 0 if it was guessed.
+    pub seen: Vec<u8>,
     /// Positions of the cameras in world coordinates, metres.
     pub viewpoints: Vec<[f32; 3]>,
     /// Pixels that were fused, of all images.
@@ -81,6 +84,9 @@ pub enum FuseError {
         /// What is wrong.
         error: VolumeError,
     },
+    /// What the images do not show cannot be guessed.
+    #[error(transparent)]
+    Completion(#[from] CompletionError),
     /// The settings are not usable, or the call was cancelled.
     #[error(transparent)]
     Settings(#[from] VolumeError),
@@ -89,10 +95,40 @@ pub enum FuseError {
     Surface(#[from] IsosurfaceError),
 }
 
-/// Fuses the images in a volume of these settings and returns its surface. The volume grows up to about 1.1 GB.
+/// Fuses the images in a volume of these settings and returns its surface. The volume grows up to about 1.1 GB. The mesh
+/// is open where no image shows the surface.
 pub fn scan(
     frames: &[ScanFrame],
     settings: &VolumeSettings,
+    monitor: &Monitor,
+) -> Result<ScannedMesh, FuseError> {
+    fuse(frames, settings, None, monitor)
+}
+
+/// Fuses images of an object that is held alone and guesses what they do not show, see
+/// [`completion`](hangpose_core::perception::completion). The mesh is closed. The volume is dense, pixels without a depth
+/// show free space, and without a crop box it is the [`room`] of the object.
+pub fn complete_scan(
+    frames: &[ScanFrame],
+    settings: &VolumeSettings,
+    guess: &CompletionSettings,
+    monitor: &Monitor,
+) -> Result<ScannedMesh, FuseError> {
+    let shown = frames.iter().filter_map(|frame| Some((frame.image().ok()?, frame.mask())));
+    let margin = settings.truncation + 2.0 * settings.voxel;
+    let crop = settings.crop.or_else(|| room(shown, guess, settings.max_depth, margin));
+    let settings = VolumeSettings { crop, dense: crop.is_some(), missing_is_free: true, ..*settings };
+    if let Some(needed) = settings.dense_blocks().filter(|needed| *needed > MOST_BLOCKS) {
+        return Err(VolumeError::DenseLimit { needed, limit: MOST_BLOCKS }.into());
+    }
+    fuse(frames, &settings, Some(guess), monitor)
+}
+
+/// Checks the images and fuses them in a volume that is large enough.
+fn fuse(
+    frames: &[ScanFrame],
+    settings: &VolumeSettings,
+    guess: Option<&CompletionSettings>,
     monitor: &Monitor,
 ) -> Result<ScannedMesh, FuseError> {
     let image = |(index, frame): (usize, &'_ ScanFrame)| {
@@ -113,7 +149,7 @@ pub fn scan(
     }
     let mut blocks = settings.dense_blocks().filter(|_| settings.dense).unwrap_or(FIRST_BLOCKS);
     loop {
-        match attempt(frames, &images, settings, blocks, monitor) {
+        match attempt(frames, &images, settings, blocks, guess, monitor) {
             Err(FuseError::Volume { error: VolumeError::Full { .. }, .. }) if 2 * blocks <= MOST_BLOCKS => {
                 blocks *= 2;
             }
@@ -128,6 +164,7 @@ fn attempt(
     images: &[DepthImage],
     settings: &VolumeSettings,
     blocks: usize,
+    guess: Option<&CompletionSettings>,
     monitor: &Monitor,
 ) -> Result<ScannedMesh, FuseError> {
     let limits = VolumeLimits { blocks };
@@ -142,13 +179,19 @@ fn attempt(
     if pixels == 0 {
         return Err(FuseError::Outside { max_depth: settings.max_depth, seen: extent(frames, images) });
     }
+    if let Some(guess) = guess {
+        let mut scratch = vec![0; Completion::bytes(volume.blocks())];
+        volume.complete(guess, &mut scratch, monitor)?;
+    }
     let mut scratch = vec![0; Isosurface::bytes(volume.blocks())];
     let surface = Isosurface::find(&volume, &mut scratch, monitor)?;
     let (mut vertices, mut triangles) =
         (vec![[0.0; 3]; surface.vertices()], vec![[0; 3]; surface.triangles()]);
     surface.write(&mut vertices, &mut triangles)?;
+    let mut seen = vec![0; surface.vertices()];
+    surface.write_seen(&mut seen)?;
     let viewpoints = images.iter().map(|image| image.viewpoint().into()).collect();
-    Ok(ScannedMesh { vertices, triangles, viewpoints, pixels, volume_bytes, agreement: None })
+    Ok(ScannedMesh { vertices, triangles, seen, viewpoints, pixels, volume_bytes, agreement: None })
 }
 
 /// The box around what the images show, of the mask's label where there is one.

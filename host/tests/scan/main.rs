@@ -1,6 +1,7 @@
 //! Depth images from files to a mesh: formats, errors and the command `hangpose scan`.
 
 mod command;
+mod completion;
 mod errors;
 mod formats;
 mod garbage;

@@ -38,7 +38,7 @@ impl Surroundings {
 /// Nine voxels in a row along x, a bit each.
 #[derive(Clone, Copy, Default)]
 struct Row {
-    seen: u16,
+    known: u16,
     inside: u16,
 }
 
@@ -46,14 +46,14 @@ impl Row {
     fn of(voxels: &[Voxel]) -> Self {
         let mut row = Self::default();
         for (i, voxel) in voxels.iter().enumerate() {
-            row.seen |= u16::from(voxel.is_seen()) << i;
+            row.known |= u16::from(voxel.is_known()) << i;
             row.inside |= u16::from(voxel.distance < 0) << i;
         }
         row
     }
 }
 
-/// Calls `visit` with each cell of the block that has corners inside and outside, all of them seen: its first voxel's
+/// Calls `visit` with each cell of the block that has corners inside and outside, all of them known: its first voxel's
 /// steps in the block, and its corners inside, as in [`CASE`](super::table::CASE).
 #[inline]
 pub(super) fn for_each_cell(volume: &Volume, around: &Surroundings, mut visit: impl FnMut([u32; 3], usize)) {
@@ -67,16 +67,16 @@ pub(super) fn for_each_cell(volume: &Volume, around: &Surroundings, mut visit: i
                 number => Row::of(&volume.block(number).1[place..place + count]),
             };
             let (near, far) = (voxels(index, ROW), voxels(index | 1, 1));
-            *row = Row { seen: near.seen | far.seen << ROW, inside: near.inside | far.inside << ROW };
+            *row = Row { known: near.known | far.known << ROW, inside: near.inside | far.inside << ROW };
         }
     }
     for z in 0..ROW {
         for y in 0..ROW {
             let edges = [rows[z][y], rows[z][y + 1], rows[z + 1][y], rows[z + 1][y + 1]];
             let all = |get: fn(&Row) -> u16| edges.iter().fold(u16::MAX, |bits, row| bits & get(row));
-            let (seen, inside) = (all(|row| row.seen), all(|row| row.inside));
+            let (known, inside) = (all(|row| row.known), all(|row| row.inside));
             let some = edges.iter().fold(0, |bits, row| bits | row.inside);
-            let mut cells = seen & seen >> 1 & (some | some >> 1) & !(inside & inside >> 1) & 0xFF;
+            let mut cells = known & known >> 1 & (some | some >> 1) & !(inside & inside >> 1) & 0xFF;
             while cells != 0 {
                 let x = cells.trailing_zeros();
                 let corners = (0..4)

@@ -2,7 +2,7 @@
 //!
 //! Only cells whose eight corners were seen hold triangles. So the mesh is open where it borders on what no camera saw,
 //! and there is no surface between free and unknown space. Where everything around a surface was seen, the mesh is
-//! closed: each edge has exactly two triangles.
+//! closed: each edge has exactly two triangles. [`Volume::complete`] guesses what was not seen.
 
 mod cells;
 mod error;
@@ -14,6 +14,7 @@ pub use error::IsosurfaceError;
 
 use super::volume::Volume;
 use super::volume::blocks::{BLOCK, BLOCK_VOXELS, VOXEL_RANGE};
+use super::volume::voxel::Voxel;
 use crate::Monitor;
 use crate::geometry::MAX_COUNT;
 use crate::memory::{Arena, array_bytes, model_bytes};
@@ -150,6 +151,37 @@ impl<'v, 'm> Isosurface<'v, 'm> {
         Ok(())
     }
 
+    /// Writes for each vertex, in the order of [`write`](Self::write), 1 if images show the surface there and 0 if it is
+    /// part of a guess of [`Volume::complete`]. A slice that is too short is an error.
+    pub fn write_seen(&self, seen: &mut [u8]) -> Result<(), IsosurfaceError> {
+        if seen.len() < self.vertices {
+            return Err(IsosurfaceError::Vertices { needed: self.vertices, limit: seen.len() });
+        }
+        let mut vertex = 0;
+        for block in 0..self.volume.blocks() {
+            let around = Surroundings::of(self.volume, block);
+            for word in 0..WORDS {
+                let mut marks = self.marks[block * WORDS + word];
+                while marks != 0 {
+                    let place = word % (WORDS / 3) * 64 + marks.trailing_zeros() as usize;
+                    let [start, end] = self.ends(&around, block, place, word / (WORDS / 3));
+                    seen[vertex] = u8::from(start.is_seen() && end.is_seen());
+                    vertex += 1;
+                    marks &= marks - 1;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The voxels at the ends of the edge that begins at voxel `place` of a block and runs along an axis.
+    fn ends(&self, around: &Surroundings, block: usize, place: usize, axis: usize) -> [Voxel; 2] {
+        let mut end = place_steps(place);
+        end[axis] += 1;
+        let (other, other_place) = around.locate(end);
+        [self.volume.block(block).1[place], self.volume.block(other).1[other_place]]
+    }
+
     /// Index of the vertex on a marked edge.
     #[inline]
     fn index(&self, (word, bit): (usize, u32)) -> u32 {
@@ -159,20 +191,21 @@ impl<'v, 'm> Isosurface<'v, 'm> {
 
     /// Where the distance is zero on the edge that begins at voxel `place` of a block and runs along an axis.
     fn position(&self, around: &Surroundings, block: usize, place: usize, axis: usize) -> [f32; 3] {
-        let (key, voxels) = self.volume.block(block);
-        let at = [0, 1, 2].map(|i| place as u32 >> (3 * i) & (BLOCK - 1));
-        let mut end = at;
-        end[axis] += 1;
-        let (other, other_place) = around.locate(end);
-        let start = f32::from(voxels[place].distance);
-        let end = f32::from(self.volume.block(other).1[other_place].distance);
+        let at = place_steps(place);
+        let [start, end] = self.ends(around, block, place, axis).map(|voxel| f32::from(voxel.distance));
         let t = (start / (start - end)).clamp(END, 1.0 - END);
-        let first = key.first_voxel();
+        let first = self.volume.block(block).0.first_voxel();
         [0, 1, 2].map(|i| {
             let along = if i == axis { t } else { 0.0 };
             ((first[i] + at[i]) as f32 - VOXEL_RANGE as f32 + along) * self.volume.settings().voxel
         })
     }
+}
+
+/// Steps of a voxel from the first one of its block.
+#[inline]
+fn place_steps(place: usize) -> [u32; 3] {
+    [0, 1, 2].map(|i| place as u32 >> (3 * i) & (BLOCK - 1))
 }
 
 /// The word and the bit that mark an edge of a cell.

@@ -12,6 +12,17 @@ use crate::perception::depth::{DepthImage, Mask, NOTHING};
 const OUTLINE: f32 = 1.5;
 /// Mean distance from an outline of the voxels that are nearer than [`OUTLINE`], voxels.
 const BESIDE: f32 = OUTLINE / 2.0;
+/// Distance between the pixels with a depth on both sides of pixels without, up to which those between them are taken for
+/// lost, pixels. Measurements fail in narrower stretches: at edges, and where a curved surface turns away.
+const LOST: i32 = 8;
+/// Difference in depth up to which a pixel supports its neighbour, parts of the depth, besides the truncation: the noise of
+/// depth cameras.
+const SUPPORT: f32 = 0.01;
+/// Number of the eight pixels around one that must support it. A pixel with fewer is a flying pixel between two surfaces.
+const SUPPORTING: usize = 2;
+/// Weight of a pixel that sees nothing against one with a depth. It decides only where no image shows a surface: a surface
+/// that other images show may return nothing at a grazing angle.
+const NOTHING_SEEN: f32 = 1.0 / 32.0;
 const ROW: usize = BLOCK as usize;
 
 /// One image against the blocks of a volume.
@@ -25,6 +36,7 @@ pub(super) struct Fusion<'a> {
     voxel: f32,
     truncation: f32,
     max_depth: f32,
+    missing_is_free: bool,
     /// Difference of raw depths that is a jump.
     jump: f32,
     /// [`OUTLINE`] in pixels across and down, at a depth of a metre.
@@ -49,6 +61,7 @@ impl<'a> Fusion<'a> {
             voxel: settings.voxel,
             truncation: settings.truncation,
             max_depth: settings.max_depth,
+            missing_is_free: settings.missing_is_free,
             jump: settings.truncation / image.scale(),
             outline: image.camera().focal().map(|focal| OUTLINE * settings.voxel * focal),
         }
@@ -146,12 +159,16 @@ impl<'a> Fusion<'a> {
     fn observe(&self, voxel: &mut Voxel, [u, v]: [u32; 2], depth: f32, inverse_depth: f32) -> bool {
         let pixel = v as usize * self.image.camera().size()[0] as usize + u as usize;
         let raw = self.image.depths()[pixel];
-        if matches!(raw, 0 | NOTHING) {
-            return false;
-        }
-        let surface = f32::from(raw) * self.image.scale();
+        let surface = match raw {
+            0 | NOTHING if self.is_seen_through([u, v]) => f32::INFINITY,
+            0 | NOTHING => return false,
+            raw => f32::from(raw) * self.image.scale(),
+        };
         let distance = surface - depth;
-        let weight = weight(inverse_depth);
+        let weight = match surface {
+            f32::INFINITY => (NOTHING_SEEN * weight(inverse_depth)).max(1.0),
+            _ => weight(inverse_depth),
+        };
         if distance >= self.truncation {
             // Free, whatever the pixel shows. Beside an outline, the surface is nearer than along the ray.
             let is_beside = self.is_beside_surface([u, v], depth, inverse_depth);
@@ -161,6 +178,7 @@ impl<'a> Fusion<'a> {
         if distance <= -self.truncation
             || surface > self.max_depth
             || self.mask.is_some_and(|mask| !mask.holds(pixel))
+            || !self.is_supported([u, v], raw)
             || (distance < -self.voxel && self.is_near_outline([u, v], raw, inverse_depth))
         {
             return false;
@@ -171,15 +189,56 @@ impl<'a> Fusion<'a> {
         true
     }
 
+    /// Whether the pixels around one show the same surface.
+    #[inline]
+    fn is_supported(&self, [u, v]: [u32; 2], raw: u16) -> bool {
+        let [width, height] = self.image.camera().size();
+        let raw = f32::from(raw);
+        let limit = self.jump + SUPPORT * raw;
+        let mut supporting = 0;
+        for v in v.saturating_sub(1)..=v.saturating_add(1).min(height - 1) {
+            for u in u.saturating_sub(1)..=u.saturating_add(1).min(width - 1) {
+                let other = f32::from(self.image.depths()[v as usize * width as usize + u as usize]);
+                supporting += usize::from((other - raw).abs() <= limit);
+                // The pixel itself is among them.
+                if supporting > SUPPORTING {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
     /// Whether the depth jumps back close to a pixel. What is behind such a pixel borders on what is seen free beside it;
     /// there is no surface between them.
     #[inline]
     fn is_near_outline(&self, pixel: [u32; 2], raw: u16, inverse_depth: f32) -> bool {
         let limit = f32::from(raw) + self.jump;
-        self.probes(pixel, inverse_depth).into_iter().any(|probe| {
-            let other = self.image.depths()[probe];
-            other != NOTHING && f32::from(other) > limit
+        let width = self.image.camera().size()[0];
+        self.probes(pixel, inverse_depth).into_iter().any(|probe| match self.image.depths()[probe] {
+            0 | NOTHING => self.is_seen_through([probe as u32 % width, probe as u32 / width]),
+            other => f32::from(other) > limit,
         })
+    }
+
+    /// Whether the camera sees past everything at a pixel without a depth: the pixel is not lost between pixels with a
+    /// depth.
+    #[inline]
+    fn is_seen_through(&self, [u, v]: [u32; 2]) -> bool {
+        let [width, height] = self.image.camera().size();
+        let has_depth = |across: i32, down: i32| {
+            let (u, v) = (u.wrapping_add_signed(across), v.wrapping_add_signed(down));
+            let is_inside = u < width && v < height;
+            is_inside && !matches!(self.image.depths()[v as usize * width as usize + u as usize], 0 | NOTHING)
+        };
+        self.missing_is_free
+            && [[1, 0], [0, 1], [1, 1], [1, -1]].iter().all(|[across, down]| {
+                let first = |sign: i32| {
+                    (1..LOST).find(|n| has_depth(sign * n * across, sign * n * down)).unwrap_or(LOST)
+                };
+                let before = first(-1);
+                before == LOST || before + first(1) > LOST
+            })
     }
 
     /// Whether a pixel that sees past a depth, metres, has a surface close beside it: one at this

@@ -51,7 +51,7 @@ use super::depth::{DepthImage, Mask};
 use crate::Monitor;
 use crate::memory::{Arena, array_bytes, model_bytes};
 use crate::monitor::Meter;
-use blocks::{BLOCK_VOXELS, Blocks, Key, place_in_block};
+use blocks::{BLOCK, BLOCK_VOXELS, Blocks, Key, place_in_block};
 use fuse::Fusion;
 use settings::Extent;
 use voxel::Voxel;
@@ -117,7 +117,7 @@ impl<'m> Volume<'m> {
         Ok(Self { settings: *settings, extent, blocks, voxels })
     }
 
-    /// Fuses an image. Pixels without a depth say nothing. With a `mask`, surfaces are taken only from the pixels of its
+    /// Fuses an image. Pixels without a depth say nothing, unless [`VolumeSettings::missing_is_free`]. With a `mask`, surfaces are taken only from the pixels of its
     /// label; the others still show where space is free.
     ///
     /// A call that returns an error leaves the volume as it was. A pixel with a surface counts as one ray of the work
@@ -167,6 +167,29 @@ impl<'m> Volume<'m> {
     /// The blocks in the order in which they were added: their keys and voxels.
     pub(crate) fn block(&self, block: usize) -> (Key, &[Voxel]) {
         (self.blocks.key(block), &self.voxels[block * BLOCK_VOXELS..][..BLOCK_VOXELS])
+    }
+
+    /// The first and the last voxel that the volume stores, along each axis.
+    pub(crate) fn ends(&self) -> [[u32; 3]; 2] {
+        [self.extent.first, self.extent.last]
+    }
+
+    /// All voxels, block by block.
+    pub(crate) fn voxels(&self) -> &[Voxel] {
+        self.voxels
+    }
+
+    pub(crate) fn voxels_mut(&mut self) -> &mut [Voxel] {
+        self.voxels
+    }
+
+    /// Place of a voxel of a dense volume, which stores its blocks in the order of their coordinates.
+    #[inline]
+    pub(crate) fn dense_place(&self, voxel: [u32; 3]) -> usize {
+        let [first, last] = self.extent.blocks();
+        let [x, y, z] = [0, 1, 2].map(|i| (voxel[i] / BLOCK - first[i]) as usize);
+        let [columns, rows] = [0, 1].map(|i| (last[i] - first[i] + 1) as usize);
+        (x + columns * (y + rows * z)) * BLOCK_VOXELS + place_in_block(voxel)
     }
 
     /// The number of the block with this key.

@@ -29,6 +29,11 @@ pub struct VolumeSettings {
     pub dense: bool,
     /// Depth along the camera's z axis beyond which surfaces are not stored, metres. What is before them is still free.
     pub max_depth: f32,
+    /// Whether a camera sees past everything at pixels without a depth, except for gaps of up to 7 pixels between pixels
+    /// with one. It holds for an object that is held alone, with nothing behind it within the camera's range. Where a
+    /// surface returns no light, because it absorbs or mirrors it or is seen at a grazing angle, it is taken for free space
+    /// if no other image shows it.
+    pub missing_is_free: bool,
 }
 
 /// Why settings do not describe a volume.
@@ -116,7 +121,14 @@ impl VolumeSettings {
     /// A sparse volume of voxels of this size, metres, with a truncation of four voxels and without a crop box, for
     /// surfaces up to 5 m away.
     pub const fn new(voxel: f32) -> Self {
-        Self { voxel, truncation: TRUNCATION * voxel, crop: None, dense: false, max_depth: MAX_DEPTH }
+        Self {
+            voxel,
+            truncation: TRUNCATION * voxel,
+            crop: None,
+            dense: false,
+            max_depth: MAX_DEPTH,
+            missing_is_free: false,
+        }
     }
 
     /// Checks all values.
@@ -134,7 +146,7 @@ impl VolumeSettings {
 
     /// The voxels that the volume stores.
     pub(super) fn extent(&self) -> Result<Extent, VolumeSettingsError> {
-        let Self { voxel, truncation, crop, dense, max_depth } = *self;
+        let Self { voxel, truncation, crop, dense, max_depth, .. } = *self;
         if !(voxel.is_normal() && voxel > 0.0 && (1.0 / voxel).is_normal()) {
             return Err(VolumeSettingsError::Voxel { voxel });
         }

@@ -2,7 +2,9 @@ use super::*;
 use crate::Stop;
 use crate::geometry::{Aabb, Point, Pose};
 use crate::perception::depth::DepthCamera;
-use crate::perception::test_views::{BALL_RADIUS, View, around, ball, camera, cuboid, look_from};
+use crate::perception::test_views::{
+    AWAY, BALL_RADIUS, TORUS, View, around, ball, camera, cuboid, look_from, torus,
+};
 use crate::random::Random;
 
 const VOXEL: f32 = 0.002;
@@ -162,6 +164,42 @@ fn a_mask_keeps_other_surfaces_out_but_they_still_show_what_is_free() {
         let beside = |x: f32| volume.space(&Point::new(x, 0.0, 0.06));
         assert_eq!((beside(0.0), beside(-0.03)), (Space::Free, Space::Unknown));
         assert!(matches!(volume.space(&Point::new(BALL_RADIUS, 0.0, 0.0)), Space::Surface(_)));
+    });
+}
+
+/// A ring before nothing, seen face on: its hole and its surroundings are free, and behind it is its shadow. Lost pixels on
+/// it change nothing.
+#[test]
+fn pixels_without_a_depth_are_free_when_asked_except_for_gaps() {
+    let mut view = View::new(camera(), look_from(Point::new(0.0, 0.0, 0.4)), torus, 0.0);
+    let width = camera().size()[0] as usize;
+    let on_ring = (TORUS[0] / (AWAY - TORUS[1]) * camera().focal()[0]) as usize;
+    for column in 0..5 {
+        view.depths[119 * width + 158 + on_ring + column] = 0;
+    }
+    let settings = VolumeSettings { missing_is_free: true, ..cropped(true) };
+    with_volume(settings, 2000, |volume| {
+        integrate(volume, &view);
+        let space = |x: f32, z: f32| volume.space(&Point::new(x, 0.0, z));
+        for z in [-0.06, 0.0, 0.06] {
+            assert_eq!([space(0.0, z), space(0.02, z)], [Space::Free; 2], "{z}");
+        }
+        // The shadow is a tenth wider than the ring.
+        assert_eq!([space(0.068, -0.02), space(0.068, 0.04)], [Space::Free; 2]);
+        assert_eq!([space(TORUS[0], -0.04), space(-TORUS[0], -0.04)], [Space::Unknown; 2]);
+        assert_eq!(space(0.054, -0.04), Space::Unknown);
+        // The outline has no wall along its shadow.
+        for block in 0..volume.blocks() {
+            let first = volume.block(block).0.first_voxel()[2];
+            for (place, voxel) in volume.block(block).1.iter().enumerate() {
+                let z = (first + place as u32 / 64) as f32 - blocks::VOXEL_RANGE as f32;
+                assert!(!(voxel.is_seen() && voxel.distance < 0) || z * VOXEL > -3.0 * VOXEL);
+            }
+        }
+    });
+    with_volume(cropped(true), 2000, |volume| {
+        integrate(volume, &view);
+        assert_eq!(volume.space(&Point::new(0.0, 0.0, 0.0)), Space::Unknown);
     });
 }
 

@@ -14,7 +14,8 @@ const MAX_WEIGHT: f32 = 4096.0;
 pub(crate) struct Voxel {
     /// Positive in free space, in units of the truncation over [`FREE`](Self::FREE).
     pub(crate) distance: i16,
-    /// Sum of the weights of the observations; zero where nothing was seen.
+    /// Sum of the weights of the observations; zero where nothing was seen, [`GUESS`](Self::GUESS) where the distance is a
+    /// guess.
     pub(crate) weight: u16,
 }
 
@@ -22,9 +23,33 @@ impl Voxel {
     /// Distance of a voxel at least the truncation away from the surface.
     pub(crate) const FREE: i16 = i16::MAX;
 
+    /// Weight that marks a guess.
+    const GUESS: u16 = u16::MAX;
+    /// Greatest sum of weights.
+    const MAX: u16 = Self::GUESS - 1;
+
+    /// A guessed distance, truncations.
+    pub(crate) fn guess(distance: f32) -> Self {
+        let distance = distance.clamp(-1.0, 1.0) * f32::from(Self::FREE);
+        // A guess inside stays inside, however close to the surface.
+        Self { distance: libm::floorf(distance) as i16, weight: Self::GUESS }
+    }
+
+    /// Whether there is a distance, seen or guessed.
+    #[inline]
+    pub(crate) fn is_known(self) -> bool {
+        self.weight > 0
+    }
+
     #[inline]
     pub(crate) fn is_seen(self) -> bool {
-        self.weight > 0
+        self.weight > 0 && self.weight != Self::GUESS
+    }
+
+    /// The distance in truncations.
+    #[inline]
+    pub(crate) fn part(self) -> f32 {
+        f32::from(self.distance) / f32::from(Self::FREE)
     }
 
     /// Takes an observation into the weighted mean: `distance` in truncations, of the given weight. The sum of weights is
@@ -32,11 +57,14 @@ impl Voxel {
     #[inline]
     pub(super) fn observe(&mut self, distance: f32, weight: f32) {
         let weight = (weight + 0.5) as u16;
+        if self.weight == Self::GUESS {
+            *self = Self::default();
+        }
         if distance == 1.0 && self.distance == Self::FREE {
-            self.weight = self.weight.saturating_add(weight);
+            self.weight = self.weight.saturating_add(weight).min(Self::MAX);
             return;
         }
-        let old = self.weight.min(u16::MAX - weight);
+        let old = self.weight.min(Self::MAX - weight);
         let sum = old + weight;
         let mean = f32::from(self.distance);
         let distance = distance * f32::from(Self::FREE);
@@ -82,11 +110,19 @@ mod tests {
         for _ in 0..100 {
             voxel.observe(1.0, MAX_WEIGHT);
         }
-        assert_eq!((voxel.distance, voxel.weight), (Voxel::FREE, u16::MAX));
+        assert_eq!((voxel.distance, voxel.weight), (Voxel::FREE, Voxel::MAX));
         for _ in 0..100 {
             voxel.observe(-1.0, MAX_WEIGHT);
         }
-        assert!(voxel.distance < -32000 && voxel.weight == u16::MAX);
+        assert!(voxel.distance < -32000 && voxel.weight == Voxel::MAX);
+    }
+
+    #[test]
+    fn an_observation_replaces_a_guess() {
+        let mut voxel = Voxel::guess(-1e-9);
+        assert!(voxel.is_known() && !voxel.is_seen() && voxel.distance < 0);
+        voxel.observe(0.5, 100.0);
+        assert!(voxel.is_seen() && (voxel.part() - 0.5).abs() < 1e-4 && voxel.weight == 100);
     }
 
     #[test]
