@@ -63,7 +63,11 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
         millimetres(&object.centre_of_mass().coords),
         match params.centre_of_mass {
             CentreOfMass::Given(_) => "given",
-            CentreOfMass::Volume if mass.volume_centroid.is_some() => "centroid of the volume",
+            CentreOfMass::Volume if mass.volume_centroid.is_some() && mass.is_closed =>
+                "centroid of the volume",
+            CentreOfMass::Volume if mass.volume_centroid.is_some() => {
+                "centroid of the volume with its holes closed"
+            }
             _ => "mean of the surface samples",
         }
     );

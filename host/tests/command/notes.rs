@@ -34,16 +34,15 @@ fn missing_normals_are_estimated() {
     let upper: Vec<_> = points.iter().copied().filter(|p| p[5] > -0.1).collect();
     let upper = scene.write("upper.xyz", shapes::xyz(&without_normals(&upper)));
     let text = said(&scene, &upper, &["--viewpoint", "0,0,1"]);
-    assert!(text.contains("face the viewpoint") && text.lines().count() == 1, "{text}");
+    assert!(text.contains("face the viewpoint") && text.lines().count() == 2, "{text}");
+    assert!(text.contains("no camera saw the far side"), "{text}");
 
-    // Seen from below, no normal points up.
+    // Seen from below, no normal points up, and the ring hangs on a top that is guessed.
     let predict = ["predict", "--viewpoint", "0,0,-1", "--json", "-", "--object"];
     let run = finish(command().args(predict).arg(&scene.ring).arg("--supporter").arg(&upper));
-    assert_eq!(run.status, Some(3), "{}", run.stdout);
-    assert_eq!(run.json()["rejection"]["stage"], "no_support");
-    let run = run!("inspect", upper, "--viewpoint=0,0,-1", "--json");
-    assert_eq!(run.json()["counts"]["contacts"], 0, "inspect uses the viewpoint, too");
-    assert!(run.stderr.contains("face the viewpoint"));
+    assert!(run.stderr.contains("face the viewpoint"), "{}", run.stderr);
+    assert_eq!(run.status, Some(0), "{}", run.stdout);
+    assert_eq!(run.json()["poses"][0]["is_near_guess"], true, "{}", run.stdout);
 
     let text = said(&scene, &scene.peg, &["--viewpoint", "0,0,1"]);
     assert!(text.contains("--viewpoint has no effect"), "{text}");
