@@ -209,10 +209,10 @@ fn the_sample_hangs_whatever_is_wrong_with_the_cloud() {
 #[test]
 fn other_shapes_hang_as_well() {
     let all = made(40, 21);
-    let is_tried =
-        |case: &&Case| ["scissors", "utensil"].contains(&case.object_kind.as_str()) && case.fit == Fit::Yes;
-    let failures: Vec<String> = all.iter().filter(is_tried).take(2).flat_map(failures).collect();
-    println!("{} of {} fail:\n{}", failures.len(), 2 * KINDS.len(), failures.join("\n"));
-    // Of five pairs, 52 of 55 clouds gave a pose that hangs: 600 points on a peg with a plate are too few for the plate.
-    assert!(failures.len() <= 2, "{}", failures.join("\n"));
+    let is_tried = |case: &&Case| case.object_kind == "scissors" && case.fit == Fit::Yes;
+    let case = all.iter().find(is_tried).expect("scissors are among the kinds of objects");
+    let failures = failures(case);
+    println!("{} of {} fail:\n{}", failures.len(), KINDS.len(), failures.join("\n"));
+    // Of five such pairs, 52 of 55 clouds gave a pose that hangs: 600 points on a peg with a plate are too few for the plate.
+    assert!(failures.len() <= 1, "{}", failures.join("\n"));
 }
