@@ -75,7 +75,8 @@ fn the_macros_never_give_less_than_the_queries() {
             // SAFETY: the pointer leads to valid limits.
             let needed = unsafe { hangpose_predict_bytes(&hangpose_limits { points, poses, ..NONE }) };
             assert!(
-                (needed..needed + 4096).contains(&given),
+                // Bytes for each point are rounded up to a whole number.
+                (needed..needed + 4096 + needed / 20).contains(&given),
                 "{points} points, {poses} poses: {given} for {needed}"
             );
         }
