@@ -28,7 +28,8 @@ const MAX_CLEARANCE: f32 = 0.001;
 pub(super) const FIRM: f32 = 0.975;
 
 /// Share of the poses close to a guessed part of the supporter that hang, of those that would hang if the guess were true.
-/// Of 77 that were said to hang with 95 % or more, 66 did (`tables --scan 0+1,0+1s --pairs 40 --seed 2`).
+/// Chosen when 66 of 77 that were said to hang with 95 % or more did; docs/PROBABILITY.md has the command and what it prints
+/// now.
 const GUESS: f32 = 0.88;
 
 /// The factor on the probability of a pose for what nobody saw.

@@ -46,11 +46,21 @@ pub(super) fn find<'s>(
     let parents = arena.slice::<u32>(count)?;
     let sizes = arena.slice::<u32>(count)?;
     let overall = median(spacings, sizes);
-    for index in 0..count {
-        let is_apart = is_apart(tree, spacings, index, overall);
+    let mut pieces = DisjointSets::new(parents);
+    for (index, point) in tree.points().iter().enumerate() {
+        let mut found = [Neighbour::default(); NEIGHBOURS];
+        let neighbours = tree.k_nearest(point, &mut found);
+        let is_apart = is_apart(tree, spacings, index, overall, neighbours);
         is_stray[tree.order()[index] as usize] = u8::from(is_apart);
+        for neighbour in neighbours {
+            let other = neighbour.index as usize;
+            let reach = LINK * spacings[index].min(spacings[other]).max(overall);
+            if neighbour.distance_squared <= reach * reach {
+                pieces.join(index as u32, other as u32);
+            }
+        }
     }
-    drop_specks(tree, (spacings, overall), is_stray, parents, sizes);
+    flag_specks(tree, &mut pieces, sizes, is_stray);
     if is_stray.iter().all(|flag| *flag > 0) {
         is_stray.fill(0);
     }
@@ -67,14 +77,18 @@ fn median(values: &[f32], bits: &mut [u32]) -> f32 {
     f32::from_bits(*bits.select_nth_unstable(middle).1)
 }
 
-/// Whether a point stands alone.
-fn is_apart(tree: &PointTree, spacings: &[f32], index: usize, overall: f32) -> bool {
+/// Whether a point stands alone among its `neighbours`.
+fn is_apart(
+    tree: &PointTree,
+    spacings: &[f32],
+    index: usize,
+    overall: f32,
+    neighbours: &[Neighbour],
+) -> bool {
     let spacing = spacings[index];
     if spacing > APART * overall {
         return !has_peers(tree, spacings, index);
     }
-    let mut found = [Neighbour::default(); NEIGHBOURS];
-    let neighbours = tree.k_nearest(&tree.points()[index], &mut found);
     let mut sorted = heapless::Vec::<f32, NEIGHBOURS>::new();
     for neighbour in neighbours.iter().filter(|n| n.index as usize != index) {
         let _ = sorted.push(spacings[neighbour.index as usize]);
@@ -109,25 +123,8 @@ fn is_flat(offsets: &[Vector]) -> bool {
     thickness <= MAX_THICKNESS * MAX_THICKNESS * spread.trace()
 }
 
-/// Flags the points of pieces of at most [`MAX_SPECK`] points. `parents` and `sizes` are working memory.
-fn drop_specks(
-    tree: &PointTree,
-    (spacings, overall): (&[f32], f32),
-    is_stray: &mut [u8],
-    parents: &mut [u32],
-    sizes: &mut [u32],
-) {
-    let mut pieces = DisjointSets::new(parents);
-    for (index, point) in tree.points().iter().enumerate() {
-        let mut found = [Neighbour::default(); NEIGHBOURS];
-        for neighbour in tree.k_nearest(point, &mut found) {
-            let other = neighbour.index as usize;
-            let reach = LINK * spacings[index].min(spacings[other]).max(overall);
-            if neighbour.distance_squared <= reach * reach {
-                pieces.join(index as u32, other as u32);
-            }
-        }
-    }
+/// Flags the points of pieces of at most [`MAX_SPECK`] points. `sizes` is working memory.
+fn flag_specks(tree: &PointTree, pieces: &mut DisjointSets, sizes: &mut [u32], is_stray: &mut [u8]) {
     sizes.fill(0);
     for index in 0..sizes.len() {
         sizes[pieces.find(index as u32) as usize] += 1;
