@@ -30,7 +30,7 @@ test: setup
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
-	cargo run --release -p host-tests --example samples -- --check
+	cargo run -p host-tests --example samples -- --check
 	cargo run -p hangpose-ffi --example header -- --check
 	scripts/bare-metal.sh
 	scripts/link.sh
