@@ -59,7 +59,7 @@
 #define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 506
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 43008
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 14
-#define HANGPOSE_PREDICT_BYTES_EACH_POSE 384
+#define HANGPOSE_PREDICT_BYTES_EACH_POSE 396
 
 // Version of the structs and functions in this header. hangpose_params_init and hangpose_check_abi refuse a
 // program whose header has another version than the library.
@@ -226,11 +226,17 @@ typedef struct hangpose_mesh {
   uint32_t vertex_count;
   // Number of triangles.
   uint32_t triangle_count;
+  // Number of viewpoints; 0 if the mesh is all of the object.
+  uint32_t viewpoint_count;
   // Array of vertex_count rows of x, y, z: metres, in object coordinates, each within +-1,000,000. For
   // hangpose_mesh_sample the coordinates are those of the supporter.
   const float *vertices;
   // Array of triangle_count rows of three vertex indices, counted from 0.
   const uint32_t *triangles;
+  // Array of viewpoint_count rows of x, y, z: positions of the cameras whose images the mesh was made from, metres, in
+  // object coordinates. What is in the shadow of the mesh for all of them was not seen: the object may be there as well,
+  // and poses that have the supporter there are less probable. May be null if viewpoint_count is 0.
+  const float *viewpoints;
 } hangpose_mesh;
 
 // A point cloud in the caller's arrays. The library keeps no pointer to the arrays after the call.
@@ -492,9 +498,15 @@ typedef struct hangpose_pose {
   uint32_t has_rest;
   // Probability that the object hangs and stays, 0 to 1.
   float probability;
-  // 1 if the pose is close to a part of the supporter that no viewpoint saw and that was guessed, else 0. Another
-  // view of the supporter would then say more.
-  uint32_t is_near_guess;
+  // Share of the directions from which no camera looked at the object, 0 to 1: the same for all poses. This and the next
+  // two are 0 if no viewpoints are given, and lower the probability.
+  float unseen_object;
+  // Share of the supporter near the object that is in the shadow of the object's mesh, 0 to 1: no camera saw that the
+  // object is not there. Another view of the object would then say more.
+  float unseen_shadow;
+  // Share of the supporter close to the object that no camera saw and that was guessed, 0 to 1. Another view of the
+  // supporter would then say more.
+  float unseen_supporter;
   // Rest pose: x, y, z of the origin of the object, metres, in supporter coordinates.
   float rest_position[3];
   // Rest pose: x, y, z, w of the unit quaternion that rotates object coordinates into supporter coordinates.

@@ -138,6 +138,12 @@ struct mesh : hangpose_mesh {
     vertices = internal::numbers(vertex_rows);
     triangles = internal::numbers(triangle_rows);
   }
+  // Sets the positions of the cameras whose images the mesh was made from, metres.
+  mesh &seen_from(view<const vec3> positions) noexcept {
+    viewpoint_count = internal::count(positions.size());
+    viewpoints = internal::numbers(positions);
+    return *this;
+  }
 };
 
 // A point cloud in the caller's arrays, which must outlive it: points, and one normal for each point or none.

@@ -67,8 +67,10 @@ impl C {
             struct_size: size_of::<hangpose_mesh>() as u32,
             vertex_count: mesh.vertices.len() as u32,
             triangle_count: mesh.triangles.len() as u32,
+            viewpoint_count: 0,
             vertices: mesh.vertices.as_ptr().cast(),
             triangles: mesh.triangles.as_ptr().cast(),
+            viewpoints: null(),
         };
         let cloud = hangpose_cloud {
             struct_size: size_of::<hangpose_cloud>() as u32,

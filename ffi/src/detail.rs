@@ -103,6 +103,7 @@ mod tests {
             MeshError::TooLarge { count: most, limit: most }.into(),
             MeshError::Coordinate { vertex: most, position: worst }.into(),
             MeshError::Index { triangle: most, vertex: u32::MAX, vertices: most }.into(),
+            MeshError::Viewpoint { viewpoint: usize::MAX, position: worst }.into(),
             MeshError::AllDegenerate { triangles: most }.into(),
             CloudError::TooLarge { count: most, limit: most }.into(),
             CloudError::Normal { point: most, normal: worst }.into(),

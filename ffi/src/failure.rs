@@ -64,7 +64,7 @@ impl Failure {
             ) => HANGPOSE_ERROR_COUNT,
             Self::Choice { .. }
             | Self::Params(_)
-            | Self::Mesh(MeshError::Coordinate { .. })
+            | Self::Mesh(MeshError::Coordinate { .. } | MeshError::Viewpoint { .. })
             | Self::Cloud(
                 CloudError::Coordinate { .. }
                 | CloudError::Normal { .. }
@@ -149,6 +149,9 @@ fn mesh_place(error: MeshError) -> Place {
         MeshError::Index { triangle, vertex, vertices } => {
             let place = Place::of("mesh.triangles").value(f64::from(vertex));
             Place { index: Some(triangle), ..place.range([0.0, vertices as f64 - 1.0]) }
+        }
+        MeshError::Viewpoint { viewpoint, position } => {
+            Place::of("mesh.viewpoints").coordinate(Some(viewpoint), position)
         }
         MeshError::AllDegenerate { .. } => Place::of("mesh.triangles"),
     }

@@ -47,7 +47,7 @@ pub unsafe extern "C" fn hangpose_object_create(
         let memory = memory.cast::<u8>();
         // SAFETY: the caller vouches for the pointers.
         let mesh = unsafe { input(mesh) }?;
-        let [mesh_region, vertices, triangles] = mesh.regions();
+        let [mesh_region, vertices, triangles, viewpoints] = mesh.regions();
         keep_apart(&[
             Region::written(DETAIL, detail, 1),
             Region::written("memory", memory, memory_size),
@@ -57,6 +57,7 @@ pub unsafe extern "C" fn hangpose_object_create(
             mesh_region,
             vertices,
             triangles,
+            viewpoints,
         ])?;
         // SAFETY: the caller vouches for the pointers, and what is written is apart from the rest.
         let (object, params, monitor) =

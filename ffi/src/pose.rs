@@ -67,9 +67,15 @@ pub struct hangpose_pose {
     pub has_rest: u32,
     /// Probability that the object hangs and stays, 0 to 1.
     pub probability: f32,
-    /// 1 if the pose is close to a part of the supporter that no viewpoint saw and that was guessed, else 0. Another
-    /// view of the supporter would then say more.
-    pub is_near_guess: u32,
+    /// Share of the directions from which no camera looked at the object, 0 to 1: the same for all poses. This and the next
+    /// two are 0 if no viewpoints are given, and lower the probability.
+    pub unseen_object: f32,
+    /// Share of the supporter near the object that is in the shadow of the object's mesh, 0 to 1: no camera saw that the
+    /// object is not there. Another view of the object would then say more.
+    pub unseen_shadow: f32,
+    /// Share of the supporter close to the object that no camera saw and that was guessed, 0 to 1. Another view of the
+    /// supporter would then say more.
+    pub unseen_supporter: f32,
     /// Rest pose: x, y, z of the origin of the object, metres, in supporter coordinates.
     pub rest_position: [f32; 3],
     /// Rest pose: x, y, z, w of the unit quaternion that rotates object coordinates into supporter coordinates.
@@ -116,7 +122,9 @@ impl From<&HangingPose> for hangpose_pose {
         if let Some(rest) = &pose.rest {
             answer.has_rest = 1;
             answer.probability = rest.probability;
-            answer.is_near_guess = u32::from(rest.is_near_guess);
+            answer.unseen_object = rest.unseen.object;
+            answer.unseen_shadow = rest.unseen.shadow;
+            answer.unseen_supporter = rest.unseen.supporter;
             answer.rest_position = rest.pose.translation.vector.into();
             answer.rest_quaternion = rest.pose.rotation.coords.into();
             answer.sinking = rest.sinking;
@@ -156,7 +164,9 @@ impl hangpose_pose {
             quaternion: [NAN; 4],
             has_rest: 0,
             probability: NAN,
-            is_near_guess: 0,
+            unseen_object: NAN,
+            unseen_shadow: NAN,
+            unseen_supporter: NAN,
             rest_position: [NAN; 3],
             rest_quaternion: [NAN; 4],
             sinking: NAN,

@@ -30,7 +30,7 @@ pub unsafe extern "C" fn hangpose_mesh_sample(
     let sample = || {
         // SAFETY: the caller vouches for the pointer.
         let mesh = unsafe { input(mesh) }?;
-        let [mesh_region, vertices, triangles] = mesh.regions();
+        let [mesh_region, vertices, triangles, viewpoints] = mesh.regions();
         let rows = count as usize;
         keep_apart(&[
             Region::written(DETAIL, detail, 1),
@@ -40,6 +40,7 @@ pub unsafe extern "C" fn hangpose_mesh_sample(
             mesh_region,
             vertices,
             triangles,
+            viewpoints,
         ])?;
         if rows == 0 || rows > sampling::MAX_SAMPLES {
             return Err(Failure::Count { field: "count", count: rows, most: sampling::MAX_SAMPLES });

@@ -4,7 +4,7 @@ use super::AnalysisError;
 use super::method::{self, ObjectPlaces, ObjectSlots};
 use super::samples::ObjectSamples;
 use crate::geometry::{DistanceField, MassProperties, Mesh, Point, Surface, Vector};
-use crate::mechanics::Body;
+use crate::mechanics::{Body, Views};
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::Params;
@@ -19,6 +19,7 @@ pub struct Object<'m> {
     reach: f32,
     mass: MassProperties,
     centre_of_mass: Point,
+    views: Views<'m>,
     work: Work,
     stopped: Option<Stop>,
 }
@@ -28,6 +29,7 @@ impl<'m> Object<'m> {
     pub const fn bytes(limits: &Limits) -> usize {
         let model = Surface::bytes(limits.triangles)
             .saturating_add(DistanceField::bytes(limits.voxels))
+            .saturating_add(Views::BYTES)
             .saturating_add(method::object_bytes());
         let before_sampling = larger(
             MassProperties::scratch_bytes(limits.vertices, limits.triangles),
@@ -71,6 +73,7 @@ impl<'m> Object<'m> {
             0 => None,
             voxels => Some(DistanceField::build(&surface, voxels, &mut arena)?),
         };
+        let views = Views::of(mesh, &mut arena)?;
         let slots = ObjectSlots::new(params, &mut arena)?;
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
 
@@ -93,7 +96,7 @@ impl<'m> Object<'m> {
         let corners = surface.triangles().iter().flatten();
         let reach = corners.map(|corner| (corner - centre_of_mass).norm()).fold(0.0, f32::max);
         let work = meter.work;
-        Ok(Self { surface, field, places, reach, mass, centre_of_mass, work, stopped })
+        Ok(Self { surface, field, places, reach, mass, centre_of_mass, views, work, stopped })
     }
 
     /// The object as mechanics sees it, if it was analysed with voxels.
@@ -109,6 +112,7 @@ impl<'m> Object<'m> {
             inverse_inertia,
             reach: self.reach,
             extent: self.surface.aabb().extents().max(),
+            views: self.views,
         })
     }
 

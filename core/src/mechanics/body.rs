@@ -1,5 +1,6 @@
 //! The object in the simulation: a rigid body of uniform density.
 
+use super::Views;
 use crate::geometry::{DistanceField, Point, Pose, Surface, Vector};
 use nalgebra::{Matrix3, Quaternion, Translation3, UnitQuaternion};
 
@@ -18,6 +19,8 @@ pub(crate) struct Body<'a> {
     pub(crate) reach: f32,
     /// The largest extent of the shape, metres.
     pub(crate) extent: f32,
+    /// Where it was seen from.
+    pub(crate) views: Views<'a>,
 }
 
 /// Position and velocity of the body, in supporter coordinates.

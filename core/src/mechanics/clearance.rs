@@ -1,6 +1,6 @@
 //! Tests whether an object is clear of the supporter.
 
-use super::constants::{FIELD_BAND_RATIO, FIELD_ERROR, NEAR_GUESS, PATCH_PENETRATION};
+use super::constants::{FIELD_BAND_RATIO, FIELD_ERROR, PATCH_PENETRATION};
 use super::touch::nearest_on_patch;
 use super::{Body, Support};
 use crate::geometry::{Point, Pose, Vector};
@@ -51,23 +51,6 @@ pub(crate) fn is_off_surface(
         length > 0.0 && surface.closest_hit(from, &(segment / length)).is_some_and(|hit| hit < length)
     };
     Ok(first_hit(scene, pose, greatest, is_ball_clear, is_point_clear, crosses, meter)?.is_none())
-}
-
-/// Whether the object at `pose` is close to a part of the supporter that was guessed.
-pub(crate) fn is_near_guess(
-    (body, support): (&Body, &Support),
-    pose: &Pose,
-    meter: &mut Meter,
-) -> Result<bool, Stop> {
-    let to_object = pose.inverse();
-    let mut queries = 0;
-    let mut guesses = support.positions().zip(support.patches).filter(|(_, patch)| patch.is_guessed());
-    let is_near = guesses.any(|(position, _)| {
-        queries += 1;
-        body.field.distance(&(to_object * position)) < NEAR_GUESS
-    });
-    meter.distance_queries(queries)?;
-    Ok(is_near)
 }
 
 /// Returns the first part of the supporter that is not clear of the object: a point for which

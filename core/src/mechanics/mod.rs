@@ -21,9 +21,10 @@ mod support;
 #[cfg(test)]
 mod tests;
 mod touch;
+mod unseen;
 
 pub(crate) use body::Body;
-pub(crate) use clearance::{first_within, is_near_guess, is_off_surface};
+pub(crate) use clearance::{first_within, is_off_surface};
 pub use constants::GRAVITY;
 pub use margin::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
 pub(crate) use margin::{Firmness, firmness};
@@ -33,3 +34,5 @@ pub(crate) use release::release_pose;
 pub use settle::Fate;
 pub(crate) use settle::{Settled, comes_free, settle, swing_out};
 pub(crate) use support::{Room, Support};
+pub use unseen::Unseen;
+pub(crate) use unseen::{Views, unseen};

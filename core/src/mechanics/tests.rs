@@ -74,6 +74,7 @@ impl Scene {
             inverse_inertia: mass.inertia.try_inverse().unwrap(),
             reach,
             extent: surface.aabb().extents().max(),
+            views: Views::default(),
         };
         check(&mut Lab { body, support, sleeps: vec![Sleep::default(); Support::sleepers(count)] })
     }
@@ -844,5 +845,25 @@ fn a_body_slower_than_the_rest_speed_rests() {
             let (found, pose) = lab.settle_with(&on_rod(), &tilted(slope, Vector::x()), &params);
             assert_eq!(found, fate, "{speed} m/s, rest below {rest_speed} m/s: {pose}");
         }
+    });
+}
+
+#[test]
+fn what_is_in_the_shadow_of_all_cameras_is_not_seen() {
+    // A tube with its axis along z, 60 mm long, and a peg in its middle that ends with the tube.
+    let scene = Scene::new(
+        test_shapes::tube(0.03, 0.04, 0.06),
+        test_shapes::peg(Point::new(0.0, 0.0, -0.03), Point::new(0.0, 0.0, 0.03), 0.005, 0.002),
+    );
+    let (beside, above) = (Point::new(0.5, 0.0, 0.0), Point::new(0.0, 0.0, 0.5));
+    scene.try_out(|lab| {
+        let mut shadow = |viewpoints: &[Point], unseen: f32| {
+            let body = Body { views: Views { viewpoints, unseen }, ..lab.body };
+            let monitor = Monitor::new();
+            super::unseen((&body, &lab.support), &Pose::identity(), &mut Meter::new(&monitor)).unwrap()
+        };
+        assert_eq!(shadow(&[], 0.0), Unseen::default());
+        assert_eq!(shadow(&[beside], 0.75), Unseen { object: 0.75, shadow: 1.0, supporter: 0.0 });
+        assert_eq!(shadow(&[beside, above], 0.5).shadow, 0.0);
     });
 }

@@ -24,6 +24,8 @@ pub struct Surface {
     pub triangles: Vec<[u32; 3]>,
     /// For each vertex 1 if an image shows the surface there, 0 if it was guessed.
     pub seen: Vec<u8>,
+    /// Positions of the cameras in world coordinates, m; none with the exact shape.
+    pub viewpoints: Vec<[f32; 3]>,
 }
 
 impl Surface {
@@ -66,6 +68,7 @@ pub fn fuse(images: &[DepthImage], guess: Option<&CompletionSettings>) -> Surfac
         vertices: vec![[0.0; 3]; found.vertices()],
         triangles: vec![[0; 3]; found.triangles()],
         seen: vec![0; found.vertices()],
+        viewpoints: images.iter().map(|image| image.viewpoint().into()).collect(),
     };
     let written = found.write(&mut surface.vertices, &mut surface.triangles);
     written.and_then(|()| found.write_seen(&mut surface.seen)).expect("the lists are as long as needed");

@@ -131,7 +131,12 @@ mod tests {
         let scan = |has_back| {
             let Solid { vertices, triangles, .. } = cube(has_back);
             Seen {
-                surface: Surface { seen: vec![1; vertices.len()], vertices, triangles },
+                surface: Surface {
+                    seen: vec![1; vertices.len()],
+                    vertices,
+                    triangles,
+                    viewpoints: Vec::new(),
+                },
                 cloud: cloud.clone(),
             }
         };

@@ -82,6 +82,10 @@ pub struct Said {
     pub sinking: f32,
     /// Number of contacts at rest.
     pub contacts: usize,
+    /// Shares that no camera has seen: of the directions to the object, of the supporter in the object's shadow, and of the
+    /// supporter close to the object.
+    #[serde(default)]
+    pub unseen: [f32; 3],
 }
 
 impl From<&Rest> for Said {
@@ -96,6 +100,7 @@ impl From<&Rest> for Said {
             clearance: rest.clearance,
             sinking: rest.sinking,
             contacts: rest.contacts().len(),
+            unseen: [rest.unseen.object, rest.unseen.shadow, rest.unseen.supporter],
         }
     }
 }

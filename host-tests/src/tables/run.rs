@@ -158,8 +158,8 @@ fn judge(case: &Case, profile: &str, params: &Params, scan: &Option<Spec>, optio
         predict_poses(&object, &supporter, &params, &mut poses, &monitor).expect("the profile is valid");
     let seconds = start.elapsed().as_secs_f64();
 
-    // For a pair that cannot hang only the rejection counts.
-    let poses = if case.fit == Fit::No { &[] } else { prediction.poses };
+    // For a pair that cannot hang only the rejection counts, unless all poses are judged.
+    let poses = if case.fit == Fit::No && !options.all { &[] } else { prediction.poses };
     let scene = Scene::new(&case.object, &case.supporter);
     let drop = |world: &mut World, pose: &HangingPose| {
         let start = Instant::now();

@@ -22,7 +22,7 @@ impl Seen {
         let cloud = case.supporter_cloud();
         let (vertices, triangles) = (case.object.vertices.clone(), case.object.triangles.clone());
         Self {
-            surface: Surface { seen: vec![1; vertices.len()], vertices, triangles },
+            surface: Surface { seen: vec![1; vertices.len()], vertices, triangles, viewpoints: Vec::new() },
             cloud: SeenCloud { points: cloud.points, normals: cloud.normals, viewpoints: Vec::new() },
         }
     }
@@ -45,7 +45,7 @@ impl Seen {
 
     /// The mesh as the core takes it.
     pub(super) fn mesh(&self) -> Result<Mesh<'_>, MeshError> {
-        Mesh::new(&self.surface.vertices, &self.surface.triangles)
+        Mesh::new(&self.surface.vertices, &self.surface.triangles)?.seen_from(&self.surface.viewpoints)
     }
 
     /// The cloud as the core takes it.

@@ -6,7 +6,7 @@ use hangpose::geometry::MassProperties;
 use hangpose::hanging::contacts::{ObjectContact, SupportContact};
 use hangpose::hanging::sites::{Cost, HangingSite, SupportSite};
 use hangpose::hanging::{HangingPose, Rejection, Stage};
-use hangpose::mechanics::{Contact, Margin};
+use hangpose::mechanics::{Contact, Margin, Unseen};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -36,8 +36,7 @@ pub(super) struct Pose<'a> {
     sinking: Option<f32>,
     clearance: Option<f32>,
     probability: Option<f32>,
-    /// Whether the pose is close to a part of the supporter that no camera saw and that was guessed.
-    is_near_guess: Option<bool>,
+    unseen: Option<Unseen>,
     margin: Option<Margin>,
     contacts: Option<&'a [Contact]>,
     /// Cost of the published matching; null where poses come from contact candidates.
@@ -156,7 +155,7 @@ impl<'a> Pose<'a> {
             sinking: rest.map(|rest| rest.sinking),
             clearance: rest.map(|rest| rest.clearance),
             probability: rest.map(|rest| rest.probability),
-            is_near_guess: rest.map(|rest| rest.is_near_guess),
+            unseen: rest.map(|rest| rest.unseen),
             margin: rest.map(|rest| rest.margin),
             contacts: rest.map(|rest| rest.contacts()),
             position: pose.pose.translation.vector.into(),

@@ -11,6 +11,7 @@ use hangpose::files;
 use hangpose::geometry::{Aabb, Cloud, Mesh, Point};
 use hangpose::hanging::sites::{Cost, SiteMatch};
 use hangpose::hanging::{self, HangingPose, Object, Rest, Stage, Supporter, predict, predict_bytes};
+use hangpose::mechanics::Unseen;
 use hangpose::memory::Limits;
 use hangpose::{CentreOfMass, Monitor};
 use std::path::{Path, PathBuf};
@@ -193,6 +194,20 @@ fn candidates(sites: usize, name: &str, contacts: usize) -> String {
     if sites > 0 { format!("{sites} {name}") } else { format!("{contacts} contact candidates") }
 }
 
+/// Shares that no camera has seen from which another view would say more.
+const MUCH_UNSEEN: f32 = 0.1;
+
+/// What another view would show that was guessed, if it is much.
+fn view_that_would_help(unseen: &Unseen) -> Option<&'static str> {
+    if unseen.shadow > MUCH_UNSEEN {
+        Some("; another view of the object would show whether it has room there for the supporter")
+    } else if unseen.supporter > MUCH_UNSEEN {
+        Some("; another view of the supporter would show its far side, which was guessed")
+    } else {
+        None
+    }
+}
+
 /// How firmly an object hangs, in words.
 fn in_words(rest: &Rest) -> String {
     let margin = &rest.margin;
@@ -203,8 +218,7 @@ fn in_words(rest: &Rest) -> String {
         let [x, y, z] = [c.position.x, c.position.y, c.position.z].map(|x| 1000.0 * x);
         format!(", main contact at ({x:.0}, {y:.0}, {z:.0}) mm")
     });
-    let guess =
-        if rest.is_near_guess { "; another view would show the far side, which was guessed" } else { "" };
+    let guess = view_that_would_help(&rest.unseen).unwrap_or_default();
     format!(
         "hangs with probability {:.0} %, tolerates a tilt of {at_least}{tilt:.0} degrees or a knock of {:.1} m/s, sinks {:.1} mm after release{at}{guess}",
         100.0 * rest.probability,

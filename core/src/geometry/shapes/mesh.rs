@@ -11,6 +11,7 @@ use crate::geometry::{MAX_COORDINATE, Point};
 pub struct Mesh<'a> {
     vertices: &'a [Point],
     triangles: &'a [[u32; 3]],
+    viewpoints: &'a [Point],
 }
 
 /// Why a mesh cannot be used.
@@ -41,6 +42,13 @@ pub enum MeshError {
         /// Number of vertices.
         vertices: usize,
     },
+    /// A coordinate of a viewpoint is infinite, not a number, or beyond [`MAX_COORDINATE`].
+    Viewpoint {
+        /// Index of the viewpoint.
+        viewpoint: usize,
+        /// Its coordinates.
+        position: [f32; 3],
+    },
     /// No triangle has an area.
     AllDegenerate {
         /// Number of triangles.
@@ -68,6 +76,10 @@ impl core::fmt::Display for MeshError {
                     "triangle {triangle} names vertex {vertex}, but there are {vertices} vertices, counted from 0"
                 )
             }
+            Self::Viewpoint { viewpoint, position } => write!(
+                f,
+                "viewpoint {viewpoint}, {position:?}, is not a point in metres within ±{MAX_COORDINATE}"
+            ),
             Self::AllDegenerate { triangles } => {
                 write!(
                     f,
@@ -104,11 +116,26 @@ impl<'a> Mesh<'a> {
                 return Err(MeshError::Index { triangle, vertex, vertices: vertices.len() });
             }
         }
-        let mesh = Self { vertices: bytemuck::cast_slice(vertices), triangles };
+        let mesh = Self { vertices: bytemuck::cast_slice(vertices), triangles, viewpoints: &[] };
         if mesh.solid_triangles().next().is_none() {
             return Err(MeshError::AllDegenerate { triangles: triangles.len() });
         }
         Ok(mesh)
+    }
+
+    /// Sets the positions of the cameras (metres, in the mesh's frame) whose images the mesh was made from. What is in the
+    /// shadow of the mesh for all of them was not seen: the object may be there as well, and poses that have the supporter
+    /// there are less probable. Without viewpoints the mesh is all of the object.
+    pub fn seen_from(self, viewpoints: &'a [[f32; 3]]) -> Result<Self, MeshError> {
+        if let Some(viewpoint) = viewpoints.iter().position(|p| !is_usable(p)) {
+            return Err(MeshError::Viewpoint { viewpoint, position: viewpoints[viewpoint] });
+        }
+        Ok(Self { viewpoints: bytemuck::cast_slice(viewpoints), ..self })
+    }
+
+    /// Positions of the cameras, metres, in the mesh's frame.
+    pub fn viewpoints(&self) -> &'a [Point] {
+        self.viewpoints
     }
 
     /// All vertices, also those that no triangle uses.
@@ -175,6 +202,9 @@ mod tests {
                 matches!(check(&vertices, &[[0, 1, 3]]), MeshError::Coordinate { vertex: 2, .. }),
                 "{bad}"
             );
+            let mesh = Mesh::new(&SQUARE, &[[0, 1, 2]]).unwrap();
+            let error = mesh.seen_from(&[[0.0; 3], [0.0, bad, 0.0]]).unwrap_err();
+            assert!(matches!(error, MeshError::Viewpoint { viewpoint: 1, .. }), "{bad}");
         }
     }
 }

@@ -11,8 +11,8 @@ use super::scene::Scene;
 use crate::best::Best;
 use crate::geometry::Pose;
 use crate::mechanics::{
-    Body, Fate, Settings, Settled, Sleep, Support, comes_free, firmness, is_near_guess, is_off_surface,
-    release_pose, settle,
+    Body, Fate, Settings, Settled, Sleep, Support, comes_free, firmness, is_off_surface, release_pose,
+    settle, unseen,
 };
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop};
@@ -151,11 +151,10 @@ impl<'a> Settling<'a> {
         }
         // A pose that cannot beat the last one of a full list need not be tilted in every direction.
         let last = poses.next_to_go().and_then(|pose| pose.rest).map_or(0.0, |rest| rest.probability);
-        let least = probability::least_tilt(last, gap).max(MIN_USEFUL_TILT);
+        let unseen = unseen(scene, &pose, meter)?;
+        let least = probability::least_tilt(last, gap, &unseen).max(MIN_USEFUL_TILT);
         let firm = firmness(scene, &settled.pose, &down, params, least, self.sleeps, meter)?;
-        let is_near_guess =
-            is_near_guess(scene, &pose, meter)? || is_near_guess(scene, &settled.pose, meter)?;
-        let rest = Rest::new(settled.pose, (sinking, gap), is_near_guess, &firm);
+        let rest = Rest::new(settled.pose, (sinking, gap), unseen, &firm);
         if rest.probability >= self.params.min_probability && self.known(&rest.pose, poses).is_none() {
             self.counts.probable += 1;
             self.counts.firm += usize::from(rest.is_firm());

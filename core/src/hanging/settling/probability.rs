@@ -1,6 +1,6 @@
 //! The probability that a pose hangs. `docs/PROBABILITY.md` says where the constants come from.
 
-use crate::mechanics::Margin;
+use crate::mechanics::{Margin, Unseen};
 
 // A logistic regression of success, as the judge in `host-tests` defines it, on the margins of a rest pose. Fitted on
 // the poses of seeds 7 and 100; `make calibrate` prints a new fit of seed 100 beside these values.
@@ -25,34 +25,50 @@ const MAX_CLEARANCE: f32 = 0.001;
 
 /// Probability from which a pose is firm: [`Params::firm_enough`](crate::Params::firm_enough) such releases end the
 /// search.
-pub(super) const FIRM: f32 = 0.975;
+const FIRM: f32 = 0.975;
 
-/// Share of the poses close to a guessed part of the supporter that hang, of those that would hang if the guess were true.
-/// Chosen when 66 of 77 that were said to hang with 95 % or more did; docs/PROBABILITY.md has the command and what it prints
-/// now.
-const GUESS: f32 = 0.88;
+// Doubt: minus the logarithm of the share of poses that hang, of those that would hang if what no camera has seen were as
+// it is guessed. Fitted with the factor in docs/PROBABILITY.md on scans of seed 12.
 
-/// The factor on the probability of a pose for what nobody saw.
-pub(super) fn share_of_guess(is_near_guess: bool) -> f32 {
-    if is_near_guess { GUESS } else { 1.0 }
+/// Doubt for each part of the directions from which no camera looked at the object.
+const PER_OBJECT: f32 = 0.4;
+/// Doubt for each part of the supporter near the object that is in the shadow of the object's mesh.
+const PER_SHADOW: f32 = 2.4;
+/// Doubt for each part of the supporter close to the object that was guessed.
+const PER_SUPPORTER: f32 = 0.6;
+
+/// Share of the poses that hang, of those that would hang if what no camera has seen were as it is guessed.
+fn share_that_is_right(unseen: &Unseen) -> f32 {
+    let Unseen { object, shadow, supporter } = unseen;
+    libm::expf(-(PER_OBJECT * object + PER_SHADOW * shadow + PER_SUPPORTER * supporter))
+}
+
+/// Whether a pose of this probability is firm: it is about as probable as a pose can be with what is unseen of the object
+/// and the supporter. A pose in the shadow is not, since another may be out of it.
+pub(super) fn is_firm(probability: f32, unseen: &Unseen) -> bool {
+    probability >= FIRM * share_that_is_right(&Unseen { shadow: 0.0, ..*unseen })
 }
 
 /// The least tilt, radians, at which a pose with this clearance, in metres, reaches `probability` if it survives the
 /// jolt test.
-pub(super) fn least_tilt(probability: f32, clearance: f32) -> f32 {
+pub(super) fn least_tilt(probability: f32, clearance: f32, unseen: &Unseen) -> f32 {
+    let probability = probability / share_that_is_right(unseen);
+    if probability >= 1.0 {
+        return f32::INFINITY;
+    }
     let score = libm::logf(probability / (1.0 - probability));
     let rest = INTERCEPT + PER_JOLT * Margin::MOST_JOLT_TIME + PER_CLEARANCE * clearance.min(MAX_CLEARANCE);
     (score - rest) / PER_TILT
 }
 
 /// The probability that a pose with this margin hangs, released with this clearance, in metres.
-pub(super) fn of(margin: &Margin, clearance: f32) -> f32 {
+pub(super) fn of(margin: &Margin, clearance: f32, unseen: &Unseen) -> f32 {
     let score = INTERCEPT
         + PER_JOLT * margin.jolt_time
         + PER_TILT * margin.least_tilt()
         + PER_SINKING * (margin.tilted_sinking - FREE_SINKING).clamp(0.0, MAX_SINKING)
         + PER_CLEARANCE * clearance.min(MAX_CLEARANCE);
-    1.0 / (1.0 + libm::expf(-score))
+    share_that_is_right(unseen) / (1.0 + libm::expf(-score))
 }
 
 #[cfg(test)]
@@ -63,14 +79,15 @@ mod tests {
     #[test]
     fn the_least_tilt_is_the_one_with_that_probability() {
         for (probability, clearance) in [(0.8, 0.0008), (0.95, 0.001), (0.97, 0.001)] {
-            let tilt = least_tilt(probability, clearance);
+            let tilt = least_tilt(probability, clearance, &Unseen::default());
             let margin =
                 Margin { tilts: [tilt; DIRECTIONS], jolt_time: Margin::MOST_JOLT_TIME, ..Margin::default() };
             assert!(
-                tilt < Margin::MOST_TILT && (of(&margin, clearance) - probability).abs() < 1e-4,
+                tilt < Margin::MOST_TILT
+                    && (of(&margin, clearance, &Unseen::default()) - probability).abs() < 1e-4,
                 "{tilt}"
             );
         }
-        assert_eq!(least_tilt(0.0, 0.001), f32::NEG_INFINITY);
+        assert_eq!(least_tilt(0.0, 0.001, &Unseen::default()), f32::NEG_INFINITY);
     }
 }

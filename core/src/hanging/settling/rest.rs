@@ -2,7 +2,7 @@
 
 use super::probability;
 use crate::geometry::{Point, Pose};
-use crate::mechanics::{Contact, Firmness, MAX_CONTACTS, Margin};
+use crate::mechanics::{Contact, Firmness, MAX_CONTACTS, Margin, Unseen};
 
 /// Where a released object comes to rest, and how firmly.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,9 +16,8 @@ pub struct Rest {
     pub clearance: f32,
     /// The probability that the object hangs and stays, 0 to 1.
     pub probability: f32,
-    /// Whether the object is released or rests close to a part of the supporter that no camera saw and that was guessed. The
-    /// probability is then lower: another view of the supporter would say more.
-    pub is_near_guess: bool,
+    /// How much of what matters at the release pose no camera has seen. The probability is lower by it.
+    pub unseen: Unseen,
     /// How firmly the object stays.
     pub margin: Margin,
     contacts: [Contact; MAX_CONTACTS],
@@ -29,29 +28,20 @@ impl Rest {
     pub(super) fn new(
         pose: Pose,
         (sinking, clearance): (f32, f32),
-        is_near_guess: bool,
+        unseen: Unseen,
         firmness: &Firmness,
     ) -> Self {
         let Firmness { margin, contacts: bearing } = firmness;
         let mut contacts = [Contact::default(); MAX_CONTACTS];
         contacts[..bearing.len()].copy_from_slice(bearing);
-        let probability = probability::of(margin, clearance) * probability::share_of_guess(is_near_guess);
+        let probability = probability::of(margin, clearance, &unseen);
         let contact_count = bearing.len() as u32;
-        Self {
-            pose,
-            sinking,
-            clearance,
-            probability,
-            is_near_guess,
-            margin: *margin,
-            contacts,
-            contact_count,
-        }
+        Self { pose, sinking, clearance, probability, unseen, margin: *margin, contacts, contact_count }
     }
 
     /// Whether nothing but what nobody saw keeps the pose from being certain.
     pub(super) fn is_firm(&self) -> bool {
-        self.probability >= probability::FIRM * probability::share_of_guess(self.is_near_guess)
+        probability::is_firm(self.probability, &self.unseen)
     }
 
     /// The contacts that carry the object at rest.

@@ -1,0 +1,132 @@
+//! How much of what matters at a pose no camera has seen.
+
+use super::constants::{NEAR_GUESS, NEAR_SHADOW, OFF_MESH};
+use super::{Body, Support};
+use crate::geometry::{Mesh, Point, Pose, Vector};
+use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::monitor::{Meter, Stop};
+
+/// How much of what matters at a pose no camera has seen. All zero where no viewpoints are given.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Unseen {
+    /// Share of the directions from which no camera looked at the object, 0 to 1: the same for all poses.
+    pub object: f32,
+    /// Share of the supporter near the object that is in the shadow of the object's mesh, 0 to 1. No camera saw that the
+    /// object is not there.
+    pub shadow: f32,
+    /// Share of the supporter close to the object that no camera saw and that was guessed, 0 to 1.
+    pub supporter: f32,
+}
+
+/// Where an object was seen from.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Views<'a> {
+    /// Positions of the cameras in object coordinates, metres.
+    pub(super) viewpoints: &'a [Point],
+    /// See [`Unseen::object`].
+    pub(super) unseen: f32,
+}
+
+/// The most viewpoints that are kept. Of more, as many are taken, spread over all.
+const MAX_VIEWS: usize = 32;
+/// Directions that are probed for a camera.
+const DIRECTIONS: usize = 128;
+/// Cosine of the angle between a surface's normal and the way to a camera up to which the camera sees the surface well: 60
+/// degrees. Beyond, depth cameras lose points.
+const SEES_WELL: f32 = 0.5;
+
+impl<'a> Views<'a> {
+    /// Bytes of memory, whatever the mesh.
+    pub(crate) const BYTES: usize = array_bytes::<Point>(MAX_VIEWS);
+
+    /// The views of a mesh.
+    pub(crate) fn of(mesh: &Mesh, arena: &mut Arena<'a>) -> Result<Self, OutOfMemory> {
+        let given = mesh.viewpoints();
+        let viewpoints = arena.slice::<Point>(given.len().min(MAX_VIEWS))?;
+        let count = viewpoints.len();
+        for (k, viewpoint) in viewpoints.iter_mut().enumerate() {
+            *viewpoint = given[k * given.len() / count];
+        }
+        Ok(Self { viewpoints, unseen: unseen_directions(&mesh.aabb().centre(), viewpoints) })
+    }
+}
+
+/// Share of the directions around a centre from which no viewpoint looks at it; 0 without viewpoints.
+fn unseen_directions(centre: &Point, viewpoints: &[Point]) -> f32 {
+    if viewpoints.is_empty() {
+        return 0.0;
+    }
+    let is_seen = |direction: &Vector| {
+        viewpoints.iter().any(|viewpoint| {
+            let way = viewpoint - centre;
+            direction.dot(&way) > SEES_WELL * way.norm()
+        })
+    };
+    (0..DIRECTIONS).filter(|&k| !is_seen(&direction(k))).count() as f32 / DIRECTIONS as f32
+}
+
+/// Point of a Fibonacci lattice of [`DIRECTIONS`] points on the unit sphere.
+fn direction(k: usize) -> Vector {
+    let golden_angle = core::f32::consts::PI * (3.0 - libm::sqrtf(5.0));
+    let z = 1.0 - (2.0 * k as f32 + 1.0) / DIRECTIONS as f32;
+    let (across, angle) = (libm::sqrtf(1.0 - z * z), golden_angle * k as f32);
+    Vector::new(across * libm::cosf(angle), across * libm::sinf(angle), z)
+}
+
+/// How much of what matters no camera has seen with the object at `pose`.
+pub(crate) fn unseen(
+    (body, support): (&Body, &Support),
+    pose: &Pose,
+    meter: &mut Meter,
+) -> Result<Unseen, Stop> {
+    let (to_object, views) = (pose.inverse(), &body.views);
+    let sees = |viewpoint: &Point, point: &Point| {
+        let way = (viewpoint - point).normalize();
+        !body.surface.any_hit(&(point + way * OFF_MESH), &way)
+    };
+    let (mut close, mut guessed) = (0_u32, 0_u32);
+    let (mut near, mut hidden) = (0_u32, 0_u32);
+    for (position, patch) in support.positions().zip(support.patches) {
+        let point = to_object * position;
+        if body.is_beyond(&point, NEAR_SHADOW) {
+            continue;
+        }
+        meter.distance_queries(1)?;
+        let distance = body.field.distance(&point);
+        if distance < NEAR_GUESS {
+            close += 1;
+            guessed += u32::from(patch.is_guessed());
+        }
+        if distance < NEAR_SHADOW && !views.viewpoints.is_empty() {
+            near += 1;
+            let seen_by = views.viewpoints.iter().position(|viewpoint| sees(viewpoint, &point));
+            meter.rays(seen_by.map_or(views.viewpoints.len(), |index| index + 1))?;
+            hidden += u32::from(seen_by.is_none());
+        }
+    }
+    let share = |part: u32, all: u32| part as f32 / all.max(1) as f32;
+    Ok(Unseen { object: views.unseen, shadow: share(hidden, near), supporter: share(guessed, close) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    #[test]
+    fn a_camera_sees_a_quarter_of_all_directions_well() {
+        let centre = Point::new(0.1, 0.2, 0.3);
+        let unseen = |ways: &[Vector]| {
+            let viewpoints: Vec<Point> = ways.iter().map(|way| centre + way * 0.7).collect();
+            unseen_directions(&centre, &viewpoints)
+        };
+        assert_eq!(unseen(&[]), 0.0);
+        // A cap of 60 degrees is a quarter of the sphere; two opposite ones are a half; six see all, since no
+        // direction is more than 54.7 degrees from all axes.
+        assert!((unseen(&[Vector::x()]) - 0.75).abs() < 0.02);
+        assert!((unseen(&[Vector::x(), -Vector::x()]) - 0.5).abs() < 0.02);
+        let axes = [Vector::x(), Vector::y(), Vector::z()];
+        assert_eq!(unseen(&axes.map(|axis| [axis, -axis]).concat()), 0.0);
+    }
+}
