@@ -26,7 +26,8 @@ mod scan;
 pub use analyze::{LIMITS, TooLarge, analyze_object, analyze_supporter, predict_poses, sample_supporter};
 pub use hangpose_core::*;
 pub use scan::{
-    FAIR_AGREEMENT, FuseError, ScannedCloud, ScannedMesh, complete_scan, scan, scan_cloud, suggested_voxel,
+    CLOUD_VOXEL, FAIR_AGREEMENT, FuseError, ScannedCloud, ScannedMesh, complete_scan, scan, scan_cloud,
+    suggested_voxel,
 };
 
 /// Compiles the Rust code of the README.

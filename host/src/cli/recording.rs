@@ -11,7 +11,9 @@ use hangpose::geometry::Aabb;
 use hangpose::perception::completion::CompletionSettings;
 use hangpose::perception::depth_points::DepthPointsSettings;
 use hangpose::perception::volume::VolumeSettings;
-use hangpose::{FAIR_AGREEMENT, FuseError, Monitor, TooLarge, complete_scan, scan_cloud, suggested_voxel};
+use hangpose::{
+    CLOUD_VOXEL, FAIR_AGREEMENT, FuseError, Monitor, TooLarge, complete_scan, scan_cloud, suggested_voxel,
+};
 use std::path::{Path, PathBuf};
 
 /// Options for all depth images of a call.
@@ -26,7 +28,8 @@ pub(super) struct DepthArguments {
     /// Depth beyond which surfaces are ignored, metres.
     #[arg(long, value_name = "METRES", default_value_t = 5.0, value_parser = parse_scale)]
     pub(super) max_depth: f32,
-    /// Size of a voxel, metres [default: a hundredth of what the images show, 0.0015 to 0.003].
+    /// Size of a voxel, metres [default: 0.002 for points; for a mesh a hundredth of what the images show, 0.0015 to
+    /// 0.003].
     #[arg(long, value_name = "METRES", value_parser = parse_scale)]
     pub(super) voxel: Option<f32>,
 }
@@ -179,10 +182,15 @@ impl Recording<'_> {
         Ok(files)
     }
 
-    /// Size of a voxel for these images, metres.
-    pub(super) fn voxel(&self, frames: &[ScanFrame]) -> f32 {
+    /// Size of a voxel of the mesh of these images, metres.
+    pub(super) fn voxel_of_mesh(&self, frames: &[ScanFrame]) -> f32 {
         let DepthArguments { voxel, max_depth, .. } = *self.all;
         voxel.unwrap_or_else(|| suggested_voxel(frames, max_depth, self.crop))
+    }
+
+    /// Size of a voxel of the cloud, metres.
+    pub(super) fn voxel_of_cloud(&self) -> f32 {
+        self.all.voxel.unwrap_or(CLOUD_VOXEL)
     }
 
     /// The volume for voxels of this size, metres.
@@ -231,7 +239,7 @@ impl Recording<'_> {
     pub(super) fn object(&self) -> Result<MeshFile> {
         let named = || self.name;
         let files = self.read().with_context(named)?;
-        let (voxel, monitor) = (self.voxel(&files.frames), Monitor::new());
+        let (voxel, monitor) = (self.voxel_of_mesh(&files.frames), Monitor::new());
         let (settings, guess) = (self.volume(voxel), CompletionSettings::default());
         let mesh =
             progress::show_while(&[&monitor], || complete_scan(&files.frames, &settings, &guess, &monitor));
@@ -256,7 +264,7 @@ impl Recording<'_> {
     pub(super) fn supporter(&self) -> Result<CloudFile> {
         let named = || self.name;
         let files = self.read().with_context(named)?;
-        let found = scan_cloud(&files.frames, self.voxel(&files.frames), &self.points());
+        let found = scan_cloud(&files.frames, self.voxel_of_cloud(), &self.points());
         let found = found.map_err(|error| self.explain(error)).with_context(named)?;
         self.warn_of(found.agreement);
         let remedy = "pass a larger --voxel or a crop box";

@@ -35,11 +35,13 @@ pub(crate) fn run(arguments: &ScanArguments) -> Result<ExitCode> {
     let is_summary_shown = !matches!(output, Output::Standard);
     let frames = recording.read()?.frames;
     let read = start.elapsed().as_secs_f64();
-    let voxel = recording.voxel(&frames);
-    let scanned = match arguments.cloud {
-        true => cloud(&recording, &frames, voxel),
-        false => mesh(&recording, &frames, voxel, arguments.complete),
-    }?;
+    let (scanned, voxel) = if arguments.cloud {
+        let voxel = recording.voxel_of_cloud();
+        (cloud(&recording, &frames, voxel)?, voxel)
+    } else {
+        let voxel = recording.voxel_of_mesh(&frames);
+        (mesh(&recording, &frames, voxel, arguments.complete)?, voxel)
+    };
     let seconds = start.elapsed().as_secs_f64();
     output.write(scanned.ply)?;
     if let Some(viewpoints) = viewpoints {

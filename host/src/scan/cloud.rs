@@ -7,6 +7,10 @@ use hangpose_core::geometry::Vector;
 use hangpose_core::perception::depth_points::{DepthPointsError, DepthPointsSettings, depth_points};
 use hangpose_core::perception::volume::VolumeSettings;
 
+/// A voxel size for [`scan_cloud`], metres: finer than a nail. It is the same near and far, since a larger one at a greater
+/// distance leaves too few points on a hook.
+pub const CLOUD_VOXEL: f32 = 0.002;
+
 /// The points that depth images show.
 #[derive(Clone, Debug)]
 pub struct ScannedCloud {
@@ -44,7 +48,7 @@ pub fn scan_cloud(
         normals.truncate(start + counts.points);
     }
     if points.is_empty() {
-        return Err(FuseError::Outside { max_depth, seen: extent::of(frames, &images) });
+        return Err(FuseError::Outside { max_depth, seen: extent::of(frames) });
     }
     let pixels = points.len();
     let (points, normals) = merged(&points, &normals, voxel);

@@ -12,23 +12,24 @@ const VOXEL: f32 = 0.01;
 /// of a wire.
 const VOXELS: [f32; 2] = [0.0015, 0.003];
 
-/// A voxel size for [`scan`](crate::scan()), [`complete_scan`](crate::complete_scan) and
-/// [`scan_cloud`](crate::scan_cloud), metres: a hundredth of the largest extent of what the images show up to the depth
-/// `max_depth`, metres, in the box `crop`, but 1.5 to 3 mm.
+/// A voxel size for [`scan`](crate::scan()) and [`complete_scan`](crate::complete_scan), metres: a hundredth of the largest
+/// extent of what the images show up to the depth `max_depth`, metres, in the box `crop`, but 1.5 to 3 mm.
 pub fn suggested_voxel(frames: &[ScanFrame], max_depth: f32, crop: Option<Aabb>) -> f32 {
-    let shown = frames.iter().filter_map(|frame| Some((frame, frame.image().ok()?)));
-    let points: Vec<Point> = shown
-        .flat_map(|(frame, image)| points(frame, &image, max_depth))
-        .filter(|point| crop.is_none_or(|crop| crop.contains(point)))
-        .collect();
-    (VOXEL * Aabb::of(&points).extents().max()).clamp(VOXELS[0], VOXELS[1])
+    (VOXEL * Aabb::of(&all(frames, max_depth, crop)).extents().max()).clamp(VOXELS[0], VOXELS[1])
 }
 
 /// The box around what the images show, of the mask's label where there is one.
-pub(super) fn of(frames: &[ScanFrame], images: &[DepthImage]) -> Aabb {
-    let points: Vec<Point> =
-        frames.iter().zip(images).flat_map(|(frame, image)| points(frame, image, f32::INFINITY)).collect();
-    Aabb::of(&points)
+pub(super) fn of(frames: &[ScanFrame]) -> Aabb {
+    Aabb::of(&all(frames, f32::INFINITY, None))
+}
+
+/// Some of the points of all images up to a depth, metres, in a box, in world coordinates.
+fn all(frames: &[ScanFrame], max_depth: f32, crop: Option<Aabb>) -> Vec<Point> {
+    let images = frames.iter().filter_map(|frame| Some((frame, frame.image().ok()?)));
+    images
+        .flat_map(|(frame, image)| points(frame, &image, max_depth))
+        .filter(|point| crop.is_none_or(|crop| crop.contains(point)))
+        .collect()
 }
 
 /// Some of the points of an image up to a depth, metres, in world coordinates.

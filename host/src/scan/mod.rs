@@ -4,7 +4,7 @@ mod agreement;
 mod cloud;
 mod extent;
 
-pub use cloud::{ScannedCloud, scan_cloud};
+pub use cloud::{CLOUD_VOXEL, ScannedCloud, scan_cloud};
 pub use extent::suggested_voxel;
 
 use crate::files::depth::ScanFrame;
@@ -195,7 +195,7 @@ fn attempt(
         pixels += done.map_err(|error| FuseError::Volume { index, error })?.pixels;
     }
     if pixels == 0 {
-        return Err(FuseError::Outside { max_depth: settings.max_depth, seen: extent::of(frames, images) });
+        return Err(FuseError::Outside { max_depth: settings.max_depth, seen: extent::of(frames) });
     }
     if let Some(guess) = guess {
         let mut scratch = vec![0; Completion::bytes(volume.blocks())];
