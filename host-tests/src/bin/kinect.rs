@@ -7,7 +7,7 @@ use hangpose::files::{CloudFile, ply_bytes};
 use hangpose::geometry::{Aabb, Point, Pose, Vector};
 use hangpose::hanging::HangingPose;
 use hangpose::perception::depth::DepthImage;
-use hangpose::perception::depth_points::DepthPointsSettings;
+use hangpose::perception::depth_points::{DepthPoints, DepthPointsSettings};
 use hangpose::perception::volume::VolumeSettings;
 use hangpose::{
     CLOUD_VOXEL, Monitor, Params, analyze_object, analyze_supporter, predict_poses, scan, scan_cloud,
@@ -118,11 +118,11 @@ fn hang(frames: &[ScanFrame], arguments: &Arguments) -> Result<()> {
         let seen = predict(&case, &put.cloud()?)?;
         let exact = predict(&case, &Seen { cloud: case.supporter_cloud(), region: None })?;
         println!(
-            "{}: {} frames, nearest at {:.2} m, {} points: {}; with the exact cloud: {}",
+            "{}: {} frames, nearest at {:.2} m, {:.0} % of its pixels became points: {}; with the exact cloud: {}",
             case.name,
             put.frames.len(),
             put.distance,
-            put.cloud()?.cloud.points.len(),
+            100.0 * put.kept()?,
             words(seen),
             words(exact)
         );
@@ -191,6 +191,15 @@ impl Put {
         let settings = DepthPointsSettings { crop, ..DepthPointsSettings::default() };
         let cloud = scan_cloud(&self.frames, CLOUD_VOXEL, &settings)?.cloud;
         Ok(Seen { cloud, region: Some(grown(&self.shape, REGION)) })
+    }
+
+    /// Part of the pixels in the supporter's box that became points.
+    fn kept(&self) -> Result<f32> {
+        let crop = Some(grown(&self.shape, REGION));
+        let settings = DepthPointsSettings { crop, ..DepthPointsSettings::default() };
+        let DepthPoints { points, flying, grazing, .. } =
+            scan_cloud(&self.frames, CLOUD_VOXEL, &settings)?.counts;
+        Ok(points as f32 / (points + flying + grazing) as f32)
     }
 }
 

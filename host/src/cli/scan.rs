@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail};
 use hangpose::files::depth::{ScanFrame, ScanSources};
 use hangpose::files::{cloud_ply_bytes, ply_bytes};
 use hangpose::perception::completion::CompletionSettings;
+use hangpose::perception::depth_points::DepthPoints;
 use hangpose::{Monitor, complete_scan, scan_cloud};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -98,7 +99,11 @@ fn cloud(recording: &Recording, frames: &[ScanFrame], voxel: f32) -> Result<Scan
     let found = scan_cloud(frames, voxel, &recording.points()).map_err(|error| recording.explain(error))?;
     recording.warn_of(found.agreement);
     let cloud = found.cloud;
-    let summary = format!("{} pixels merged; cloud of {} points", found.pixels, cloud.points.len());
+    let DepthPoints { points, flying, grazing, .. } = found.counts;
+    let summary = format!(
+        "{points} pixels merged, {flying} between surfaces and {grazing} at grazing angles left out; cloud of {} points",
+        cloud.points.len()
+    );
     let ply = cloud_ply_bytes(&cloud.points, cloud.normals.as_deref().unwrap_or_default());
     Ok(Scanned { ply, viewpoints: cloud.viewpoints, summary })
 }

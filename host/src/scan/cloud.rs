@@ -4,7 +4,9 @@ use super::{FuseError, checked, extent};
 use crate::files::CloudFile;
 use crate::files::depth::ScanFrame;
 use hangpose_core::geometry::Vector;
-use hangpose_core::perception::depth_points::{DepthPointsError, DepthPointsSettings, depth_points};
+use hangpose_core::perception::depth_points::{
+    DepthPoints, DepthPointsError, DepthPointsSettings, depth_points,
+};
 use hangpose_core::perception::volume::VolumeSettings;
 
 /// A voxel size for [`scan_cloud`], metres: finer than a nail. It is the same near and far, since a larger one at a greater
@@ -16,8 +18,8 @@ pub const CLOUD_VOXEL: f32 = 0.002;
 pub struct ScannedCloud {
     /// Points and normals in world coordinates, metres, and the positions of the cameras as viewpoints.
     pub cloud: CloudFile,
-    /// Pixels that became points, of all images, before those in the same voxel were merged.
-    pub pixels: usize,
+    /// What became of the pixels of all images, before those in the same voxel were merged.
+    pub counts: DepthPoints,
     /// Part of the points of an image that reappear in the next; `None` for a single image.
     pub agreement: Option<f32>,
 }
@@ -36,6 +38,7 @@ pub fn scan_cloud(
         .map_err(|error| FuseError::Settings(error.into()))?;
     let (images, agreement) = checked(frames)?;
     let (mut points, mut normals) = (Vec::new(), Vec::new());
+    let mut all = DepthPoints::default();
     for (index, (image, frame)) in images.iter().zip(frames).enumerate() {
         let start = points.len();
         let most = start + image.depths().len();
@@ -46,15 +49,18 @@ pub fn scan_cloud(
             .map_err(wrong)?;
         points.truncate(start + counts.points);
         normals.truncate(start + counts.points);
+        all.points += counts.points;
+        all.outside += counts.outside;
+        all.flying += counts.flying;
+        all.grazing += counts.grazing;
     }
     if points.is_empty() {
         return Err(FuseError::Outside { max_depth, seen: extent::of(frames) });
     }
-    let pixels = points.len();
     let (points, normals) = merged(&points, &normals, voxel);
     let viewpoints = images.iter().map(|image| image.viewpoint().into()).collect();
     let cloud = CloudFile { points, normals: Some(normals), viewpoints, ..CloudFile::default() };
-    Ok(ScannedCloud { cloud, pixels, agreement })
+    Ok(ScannedCloud { cloud, counts: all, agreement })
 }
 
 /// One point and normal for each voxel: the means of those in it. In the order of the voxels, so that the result depends on

@@ -15,7 +15,7 @@ fn frames() -> Vec<ScanFrame> {
 fn has_one_point_a_voxel_on_the_ball_with_normals_outwards() {
     let found = scan_cloud(&frames(), 0.005, &DepthPointsSettings::default()).unwrap();
     let cloud = found.cloud;
-    assert!(cloud.points.len() > 2000 && found.pixels > 3 * cloud.points.len());
+    assert!(cloud.points.len() > 2000 && found.counts.points > 3 * cloud.points.len());
     let voxels: HashSet<_> = cloud.points.iter().map(|p| p.map(|x| (x / 0.005).floor() as i32)).collect();
     assert_eq!(voxels.len(), cloud.points.len());
     for (point, normal) in cloud.points.iter().zip(cloud.normals.as_ref().unwrap()) {
