@@ -25,7 +25,10 @@ mod scan;
 
 pub use analyze::{LIMITS, TooLarge, analyze_object, analyze_supporter, predict_poses, sample_supporter};
 pub use hangpose_core::*;
-pub use scan::{FAIR_AGREEMENT, FuseError, ScannedMesh, complete_scan, scan};
+pub use scan::{
+    CLOUD_VOXEL, FAIR_AGREEMENT, FuseError, ScannedCloud, ScannedMesh, complete_scan, scan, scan_cloud,
+    suggested_voxel,
+};
 
 /// Compiles the Rust code of the README.
 #[cfg(doctest)]

@@ -16,6 +16,8 @@ fn main() -> ExitCode {
         cli::Command::Scan(arguments) => cli::scan::run(arguments),
     };
     result.unwrap_or_else(|error| {
+        // Options that do not go together, where the parser cannot tell.
+        let error = error.downcast::<clap::Error>().map_or_else(|error| error, |error| error.exit());
         cli::say("error", format_args!("{error:#}"));
         ExitCode::from(FAILED)
     })

@@ -13,8 +13,8 @@ use std::path::Path;
 pub(super) struct Placement {
     pub(super) scale: f32,
     pub(super) up: Axis,
-    /// Name of the option that sets the scale, for warnings.
-    pub(super) scale_option: &'static str,
+    /// Name of the option that sets the scale, for warnings; `None` for depth images, whose scale is another matter.
+    pub(super) scale_option: Option<&'static str>,
 }
 
 /// A shape in metres with z up.
@@ -142,8 +142,6 @@ pub(super) fn tell_of_cloud(path: &Path, supporter: &Supporter, cloud: &Cloud) {
                 path.display()
             ),
         );
-    } else if is_seen && estimated < points {
-        say("note", format_args!("{}: has normals, so --viewpoint has no effect", path.display()));
     }
 }
 
@@ -179,13 +177,14 @@ impl Placement {
             40.0..=100.0 => ("millimetres or centimetres", 0.001),
             _ => ("millimetres", 0.001),
         };
-        let (option, scale) = (self.scale_option, rounded(self.scale * factor));
-        let advice = match (self.scale, unit) {
-            (1.0, "millimetres or centimetres") => {
+        let scale = rounded(self.scale * factor);
+        let advice = match (self.scale_option, self.scale, unit) {
+            (None, ..) => "limit what the images show by a crop box or a mask".into(),
+            (Some(option), 1.0, "millimetres or centimetres") => {
                 format!("if its unit is {unit}, pass {option} 0.001 or 0.01")
             }
-            (1.0, _) => format!("if its unit is {unit}, pass {option} {scale}"),
-            (wrong, _) => format!("it was scaled with {option} {wrong}: try {option} {scale}"),
+            (Some(option), 1.0, _) => format!("if its unit is {unit}, pass {option} {scale}"),
+            (Some(option), wrong, _) => format!("it was scaled with {option} {wrong}: try {option} {scale}"),
         };
         Some(format!(
             "the {what} is {} m large, but {TOO_SMALL} to {TOO_LARGE} m is plausible; {advice}",
@@ -205,7 +204,7 @@ mod tests {
     use hangpose::geometry::Point;
 
     fn warning(scale: f32, size: f32) -> Option<String> {
-        let placement = Placement { scale, up: Axis::Z, scale_option: "--scale" };
+        let placement = Placement { scale, up: Axis::Z, scale_option: Some("--scale") };
         placement.warn_of_size(&Aabb::of(&[Point::origin(), Point::new(0.01 * size, size, 0.0)]), "mug")
     }
 

@@ -26,7 +26,7 @@ pub(crate) fn run(arguments: &InspectArguments) -> Result<ExitCode> {
 }
 
 fn placement(arguments: &InspectArguments) -> Placement {
-    Placement { scale: arguments.scale, up: arguments.up, scale_option: "--scale" }
+    Placement { scale: arguments.scale, up: arguments.up, scale_option: Some("--scale") }
 }
 
 fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {

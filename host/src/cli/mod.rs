@@ -8,6 +8,7 @@ mod output;
 mod params;
 pub(crate) mod predict;
 mod progress;
+mod recording;
 pub(crate) mod scan;
 mod terminal;
 
@@ -15,6 +16,7 @@ pub(crate) use terminal::say;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use hangpose::geometry::Aabb;
+use recording::{DepthArguments, RecordingArguments};
 use std::path::PathBuf;
 
 /// Predict how to hang an object on a supporter, without training data and without a GPU.
@@ -27,6 +29,9 @@ pub(crate) struct Arguments {
 
 const EXAMPLE: &str = "Example: hangpose predict --object samples/mug.obj --supporter samples/hook.ply";
 
+const USAGE_OF_PREDICT: &str = "hangpose predict --object <FILE> --supporter <FILE> [OPTIONS]
+       hangpose predict --object-depth <PATTERN> --supporter-depth <PATTERN> --camera <FILE> [OPTIONS]";
+
 #[derive(Subcommand)]
 pub(crate) enum Command {
     /// Predict poses in which an object hangs on a supporter, best first.
@@ -35,55 +40,72 @@ pub(crate) enum Command {
     /// for scale and up axis are applied.
     ///
     /// Exit status: 0 poses were found, 3 nothing hangs (the JSON gives the reason), 1 bad input, 2 bad usage.
-    Predict(PredictArguments),
+    #[command(override_usage = USAGE_OF_PREDICT)]
+    Predict(Box<PredictArguments>),
     /// Show the analysis of one file: size, centre of mass, and contact candidates or hanging sites.
     ///
     /// Exit status: 0 the file was read, even if it has no candidates, 1 bad input, 2 bad usage.
     Inspect(InspectArguments),
-    /// Fuse depth images into the mesh of an object or of a scene.
+    /// Fuse depth images into the mesh or the point cloud of an object or of a scene.
     ///
     /// World coordinates are those of the poses, in metres. The mesh is open where no camera saw the surface.
     ///
-    /// Exit status: 0 the mesh was written, 1 bad input, 2 bad usage.
+    /// Exit status: 0 the mesh or cloud was written, 1 bad input, 2 bad usage.
     Scan(ScanArguments),
 }
 
 #[derive(Args)]
 pub(crate) struct PredictArguments {
-    /// The object: a mesh (obj, stl, ply, glb, gltf).
-    #[arg(long, value_name = "FILE")]
-    object: PathBuf,
-    /// The supporter: a point cloud (ply, pcd, xyz), or a mesh, which is sampled.
-    #[arg(long, value_name = "FILE")]
-    supporter: PathBuf,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Object and supporter")]
+    files: FileArguments,
+    #[command(flatten, next_help_heading = "Result")]
+    result: ResultArguments,
+    #[command(flatten, next_help_heading = "Points of the supporter")]
+    cloud: CloudArguments,
+    #[command(flatten, next_help_heading = "Method")]
     method: MethodArguments,
-    /// Maximum number of poses.
-    #[arg(long, value_name = "K", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    top: u32,
+    #[command(flatten, next_help_heading = "Depth images in place of --object or --supporter")]
+    recording: RecordingArguments,
+}
+
+/// The files of object and supporter, and how their coordinates are meant.
+#[derive(Args)]
+struct FileArguments {
+    /// The object: a mesh (obj, stl, ply, glb, gltf).
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["object_depth", "depth"])]
+    object: Option<PathBuf>,
+    /// The supporter: a point cloud (ply, pcd, xyz), or a mesh, which is sampled.
+    #[arg(long, value_name = "FILE", required_unless_present_any = ["supporter_depth", "depth"])]
+    supporter: Option<PathBuf>,
     /// Centre of mass of the object, in metres in the object frame (after scale and up axis).
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
     com: Option<[f64; 3]>,
+    /// Factor from the units of the object's file to metres (0.001 for millimetres).
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_scale, conflicts_with = "object_images")]
+    object_scale: f32,
+    /// Factor from the units of the supporter's file to metres.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_scale, conflicts_with = "supporter_images")]
+    supporter_scale: f32,
+    /// Axis of the object's file or images that becomes z: x, y, z, -x, -y or -z.
+    #[arg(long, value_name = "AXIS", default_value = "z", value_parser = Axis::parse, allow_hyphen_values = true)]
+    object_up: Axis,
+    /// Axis of the supporter's file or images that points up and becomes z.
+    #[arg(long, value_name = "AXIS", default_value = "z", value_parser = Axis::parse, allow_hyphen_values = true)]
+    supporter_up: Axis,
+}
+
+/// What is computed and where it goes.
+#[derive(Args)]
+struct ResultArguments {
+    /// Maximum number of poses.
+    #[arg(long, value_name = "K", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    top: u32,
     /// File for the result as JSON; - prints the JSON to standard output instead of the table.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// 1 analyses object and supporter one after the other, 2 or more in parallel.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     threads: u32,
-    /// Factor from the units of the object's file to metres (0.001 for millimetres).
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_scale)]
-    object_scale: f32,
-    /// Factor from the units of the supporter's file to metres.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_scale)]
-    supporter_scale: f32,
-    /// Axis of the object's file that becomes z: x, y, z, -x, -y or -z.
-    #[arg(long, value_name = "AXIS", default_value = "z", value_parser = Axis::parse, allow_hyphen_values = true)]
-    object_up: Axis,
-    /// Axis of the supporter's file that points up and becomes z.
-    #[arg(long, value_name = "AXIS", default_value = "z", value_parser = Axis::parse, allow_hyphen_values = true)]
-    supporter_up: Axis,
-    #[command(flatten)]
-    cloud: CloudArguments,
 }
 
 #[derive(Args)]
@@ -123,32 +145,25 @@ pub(crate) struct ScanArguments {
     /// a BOP scene_camera.json). Not needed for a single image or if the camera file has poses.
     #[arg(long, value_name = "PATTERN")]
     poses: Option<String>,
-    /// Poses map world to camera coordinates, not camera to world.
-    #[arg(long)]
-    world_to_camera: bool,
-    /// Metres per unit of depth [default: 0.001, or what the BOP file says].
-    #[arg(long, value_name = "METRES", value_parser = parse_scale)]
-    depth_scale: Option<f32>,
     /// Masks: PNG with one label a pixel, one mask for each image.
     #[arg(long, value_name = "PATTERN", requires = "label")]
     mask: Option<String>,
     /// Label of the object in the masks.
     #[arg(long, value_name = "N", requires = "mask")]
     label: Option<u8>,
-    /// Size of a voxel, metres.
-    #[arg(long, value_name = "METRES", default_value_t = 0.002, value_parser = parse_scale)]
-    voxel: f32,
     /// Box in world coordinates, metres, outside of which everything is ignored: least x, y, z and greatest x, y, z.
     #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = parse_box, allow_hyphen_values = true)]
     crop: Option<Aabb>,
-    /// Depth beyond which surfaces are ignored, metres.
-    #[arg(long, value_name = "METRES", default_value_t = 5.0, value_parser = parse_scale)]
-    max_depth: f32,
+    #[command(flatten)]
+    all: DepthArguments,
     /// Guess what no image shows, so that the mesh is closed. The object must be held alone: pixels without a depth count as
     /// seen through.
     #[arg(long)]
     complete: bool,
-    /// The mesh as PLY; - for standard output.
+    /// Write the points of the images with normals, a cloud for `predict --supporter`, instead of a mesh.
+    #[arg(long, conflicts_with = "complete")]
+    cloud: bool,
+    /// The mesh or cloud as PLY; - for standard output.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Also write the positions of the cameras as a JSON list.
@@ -182,7 +197,7 @@ struct CloudArguments {
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(100..=500_000))]
     supporter_points: u32,
     /// For supporters: camera position that orients normals that are missing or do not agree in sign, in metres in the
-    /// supporter frame (after scale and up axis). Repeat it for several cameras. The default is what the file says.
+    /// supporter frame (after scale and up axis). Repeat it for several cameras. The default is what the file or the images say.
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
     viewpoint: Vec<[f64; 3]>,
     /// For supporters: box that limits the places to hang on, by its lower and its upper corner in metres in the supporter

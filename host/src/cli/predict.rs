@@ -4,17 +4,18 @@ use super::input::{self, Placement};
 use super::inspect::closedness;
 use super::json::{self, MemoryBytes, PerPart, Pose, Prediction, Reason, Seconds, Stats};
 use super::output::Output;
+use super::recording::Recording;
 use super::terminal::{self, say};
-use super::{PredictArguments, progress};
+use super::{CloudArguments, FileArguments, PredictArguments, progress};
 use anyhow::{Context, Result};
-use hangpose::files;
+use hangpose::files::{self, CloudFile, MeshFile, SupporterFile};
 use hangpose::geometry::{Aabb, Cloud, Mesh, Point};
 use hangpose::hanging::sites::{Cost, SiteMatch};
 use hangpose::hanging::{self, HangingPose, Object, Rest, Stage, Supporter, predict, predict_bytes};
 use hangpose::mechanics::Unseen;
 use hangpose::memory::Limits;
 use hangpose::{CentreOfMass, Monitor};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -25,24 +26,23 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     let start = Instant::now();
     // The cheapest checks come first, so that a mistake is reported at once: constants, output file, object, supporter.
     let mut params = arguments.method.params()?;
-    if let Some(com) = arguments.com {
+    if let Some(com) = arguments.files.com {
         params.centre_of_mass = CentreOfMass::Given(com.map(|x| x as f32));
         params.validate().context("--com")?;
     }
-    let inputs = [Some(&arguments.object), Some(&arguments.supporter), arguments.method.params.as_ref()];
-    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
-    let output = arguments.json.as_deref().map(|path| Output::prepare(path, &inputs)).transpose()?;
+    let (object_source, supporter_source) = (arguments.object()?, arguments.supporter()?);
+    let inputs: Vec<&Path> = object_source
+        .files()
+        .into_iter()
+        .chain(supporter_source.files())
+        .chain(arguments.method.params.as_deref())
+        .collect();
+    let result = &arguments.result;
+    let output = result.json.as_deref().map(|path| Output::prepare(path, &inputs)).transpose()?;
     let is_table_shown = !matches!(output, Some(Output::Standard));
 
-    let (scale, up) = (arguments.object_scale, arguments.object_up);
-    let placement = Placement { scale, up, scale_option: "--object-scale" };
-    let file = files::read_mesh(&arguments.object)?;
-    let mesh = input::object(&arguments.object, file, &placement)?.shape;
-    let (scale, up) = (arguments.supporter_scale, arguments.supporter_up);
-    let placement = Placement { scale, up, scale_option: "--supporter-scale" };
-    let file = files::read_supporter(&arguments.supporter)?;
-    let points =
-        input::supporter(&arguments.supporter, file, &placement, &arguments.cloud, params.seed)?.shape;
+    let mesh = object_source.object(&arguments.files)?;
+    let points = supporter_source.supporter(&arguments.files, &arguments.cloud, params.seed)?;
     let cloud = input::seen(&points, &arguments.cloud)?;
     let (cloud, params) = (&cloud, &params);
     let mut seconds = Seconds { read: start.elapsed().as_secs_f64(), ..Seconds::default() };
@@ -57,14 +57,14 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     let prediction_memory = &mut vec![0; memory_bytes.prediction];
     let object_memory = &mut vec![0; memory_bytes.object];
     let supporter_memory = &mut vec![0; memory_bytes.supporter];
-    let mut poses = vec![HangingPose::default(); arguments.top as usize];
+    let mut poses = vec![HangingPose::default(); result.top as usize];
     let monitors = [Monitor::new(), Monitor::new(), Monitor::new()];
     let monitors = monitors.each_ref();
     let (object, supporter, prediction) = progress::show_while(&monitors, || -> Result<_> {
         let analyse_object = || timed(move || Object::analyze(mesh, params, object_memory, monitors[0]));
         let analyse_supporter =
             || timed(move || Supporter::analyze(cloud, params, supporter_memory, monitors[1]));
-        let (object, supporter) = if arguments.threads > 1 {
+        let (object, supporter) = if result.threads > 1 {
             std::thread::scope(|scope| {
                 let object = scope.spawn(analyse_object);
                 let supporter = analyse_supporter();
@@ -81,8 +81,8 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     })?;
     seconds.total = start.elapsed().as_secs_f64();
 
-    input::tell_of_cloud(&arguments.supporter, &supporter, cloud);
-    warn_of_centre_of_mass(mesh, arguments);
+    input::tell_of_cloud(supporter_source.name(), &supporter, cloud);
+    warn_of_centre_of_mass(mesh, arguments.files.com, object_source.name());
     let text = table(&prediction, (mesh, cloud), &object, &supporter);
     if let Some(output) = output {
         let document = Prediction {
@@ -117,6 +117,72 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     Ok(if prediction.rejection.is_some() { ExitCode::from(REJECTED) } else { ExitCode::SUCCESS })
 }
 
+/// What an object or a supporter is read from.
+enum Source<'a> {
+    File(&'a Path),
+    Images(Recording<'a>),
+}
+
+impl PredictArguments {
+    fn object(&self) -> Result<Source<'_>> {
+        Source::new(self.files.object.as_deref(), self.recording.object()?)
+    }
+
+    fn supporter(&self) -> Result<Source<'_>> {
+        Source::new(self.files.supporter.as_deref(), self.recording.supporter()?)
+    }
+}
+
+impl<'a> Source<'a> {
+    fn new(file: Option<&'a Path>, images: Option<Recording<'a>>) -> Result<Self> {
+        let images = images.map(Self::Images);
+        images.or(file.map(Self::File)).context("pass a file or depth images")
+    }
+
+    /// What messages call it.
+    fn name(&self) -> &Path {
+        match self {
+            Self::File(path) => path,
+            Self::Images(recording) => Path::new(recording.name),
+        }
+    }
+
+    /// The files that are read, as far as the options name them.
+    fn files(&self) -> Vec<&Path> {
+        match self {
+            Self::File(path) => vec![path],
+            Self::Images(recording) => recording.files().into(),
+        }
+    }
+
+    /// The object in metres with z up.
+    fn object(&self, arguments: &FileArguments) -> Result<MeshFile> {
+        let (scale, up) = (arguments.object_scale, arguments.object_up);
+        let (file, placement) = match self {
+            Self::File(path) => {
+                (files::read_mesh(path)?, Placement { scale, up, scale_option: Some("--object-scale") })
+            }
+            Self::Images(images) => (images.object()?, Placement { scale: 1.0, up, scale_option: None }),
+        };
+        Ok(input::object(self.name(), file, &placement)?.shape)
+    }
+
+    /// The supporter in metres with z up.
+    fn supporter(&self, arguments: &FileArguments, points: &CloudArguments, seed: u64) -> Result<CloudFile> {
+        let (scale, up) = (arguments.supporter_scale, arguments.supporter_up);
+        let (file, placement) = match self {
+            Self::File(path) => (
+                files::read_supporter(path)?,
+                Placement { scale, up, scale_option: Some("--supporter-scale") },
+            ),
+            Self::Images(images) => {
+                (SupporterFile::Cloud(images.supporter()?), Placement { scale: 1.0, up, scale_option: None })
+            }
+        };
+        Ok(input::supporter(self.name(), file, &placement, points, seed)?.shape)
+    }
+}
+
 /// The result of `work` and its duration in seconds.
 fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let start = Instant::now();
@@ -125,12 +191,12 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 }
 
 /// Warns of a centre of mass outside the object's bounding box, which is in another unit or another frame.
-fn warn_of_centre_of_mass(mesh: &Mesh, arguments: &PredictArguments) {
-    let (Some(com), aabb) = (arguments.com, mesh.aabb()) else { return };
+fn warn_of_centre_of_mass(mesh: &Mesh, com: Option<[f64; 3]>, name: &Path) {
+    let (Some(com), aabb) = (com, mesh.aabb()) else { return };
     let (offset, half) = (Point::from(com.map(|x| x as f32)) - aabb.centre(), aabb.extents() / 2.0);
     if (0..3).any(|i| offset[i].abs() > half[i]) {
         let warning = "--com is outside the object's bounding box; give metres in the object frame, after scale and up axis";
-        say("warning", format_args!("{}: {warning}", arguments.object.display()));
+        say("warning", format_args!("{}: {warning}", name.display()));
     }
 }
 

@@ -28,7 +28,7 @@ mod source;
 mod supporter;
 mod text;
 
-pub use cloud::{CloudFile, read_cloud};
+pub use cloud::{CloudFile, cloud_ply_bytes, read_cloud};
 pub use error::{FileError, Place};
 pub use mesh::{MeshFile, ply_bytes, read_mesh};
 pub use supporter::{SupporterFile, read_supporter};

@@ -1,12 +1,18 @@
-//! From depth images to the mesh of what they show.
+//! From depth images to the mesh or the point cloud of what they show.
 
 mod agreement;
+mod cloud;
+mod extent;
+
+pub use cloud::{CLOUD_VOXEL, ScannedCloud, scan_cloud};
+pub use extent::suggested_voxel;
 
 use crate::files::depth::ScanFrame;
 use hangpose_core::Monitor;
-use hangpose_core::geometry::{Aabb, Point, Pose};
+use hangpose_core::geometry::{Aabb, Pose};
 use hangpose_core::perception::completion::{Completion, CompletionError, CompletionSettings, room};
 use hangpose_core::perception::depth::{DepthImage, DepthImageError};
+use hangpose_core::perception::depth_points::DepthPointsError;
 use hangpose_core::perception::isosurface::{Isosurface, IsosurfaceError};
 use hangpose_core::perception::volume::{Volume, VolumeError, VolumeLimits, VolumeSettings};
 
@@ -14,9 +20,6 @@ use hangpose_core::perception::volume::{Volume, VolumeError, VolumeLimits, Volum
 const FIRST_BLOCKS: usize = 1 << 12;
 /// Most blocks that are tried, about 1.1 GB.
 const MOST_BLOCKS: usize = 1 << 19;
-/// Every so many pixels in both directions are looked at for the extent of what the images show.
-const EXTENT_STRIDE: usize = 8;
-
 /// Part of the points of an image that should reappear at least in the next, where the two overlap.
 pub const FAIR_AGREEMENT: f32 = 0.3;
 
@@ -39,7 +42,7 @@ pub struct ScannedMesh {
     pub agreement: Option<f32>,
 }
 
-/// Why depth images do not give a mesh.
+/// Why depth images give neither a mesh nor a cloud.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FuseError {
@@ -84,6 +87,14 @@ pub enum FuseError {
         /// What is wrong.
         error: VolumeError,
     },
+    /// An image does not give points.
+    #[error("image {index} (counted from 0): {error}")]
+    Points {
+        /// Index of the image.
+        index: usize,
+        /// What is wrong.
+        error: DepthPointsError,
+    },
     /// What the images do not show cannot be guessed.
     #[error(transparent)]
     Completion(#[from] CompletionError),
@@ -124,13 +135,9 @@ pub fn complete_scan(
     fuse(frames, &settings, Some(guess), monitor)
 }
 
-/// Checks the images and fuses them in a volume that is large enough.
-fn fuse(
-    frames: &[ScanFrame],
-    settings: &VolumeSettings,
-    guess: Option<&CompletionSettings>,
-    monitor: &Monitor,
-) -> Result<ScannedMesh, FuseError> {
+/// The images, of which there is at least one, and the part of the points of an image that reappear in the next. Poses that
+/// map the wrong way are an error.
+fn checked(frames: &[ScanFrame]) -> Result<(Vec<DepthImage<'_>>, Option<f32>), FuseError> {
     let image = |(index, frame): (usize, &'_ ScanFrame)| {
         frame.image().map(drop).map_err(|error| FuseError::Image { index, error })
     };
@@ -147,6 +154,17 @@ fn fuse(
     {
         return Err(FuseError::Convention { given, inverted });
     }
+    Ok((images, agreement))
+}
+
+/// Fuses the images in a volume that is large enough.
+fn fuse(
+    frames: &[ScanFrame],
+    settings: &VolumeSettings,
+    guess: Option<&CompletionSettings>,
+    monitor: &Monitor,
+) -> Result<ScannedMesh, FuseError> {
+    let (images, agreement) = checked(frames)?;
     let mut blocks = settings.dense_blocks().filter(|_| settings.dense).unwrap_or(FIRST_BLOCKS);
     loop {
         match attempt(frames, &images, settings, blocks, guess, monitor) {
@@ -177,7 +195,7 @@ fn attempt(
         pixels += done.map_err(|error| FuseError::Volume { index, error })?.pixels;
     }
     if pixels == 0 {
-        return Err(FuseError::Outside { max_depth: settings.max_depth, seen: extent(frames, images) });
+        return Err(FuseError::Outside { max_depth: settings.max_depth, seen: extent::of(frames) });
     }
     if let Some(guess) = guess {
         let mut scratch = vec![0; Completion::bytes(volume.blocks())];
@@ -192,20 +210,4 @@ fn attempt(
     surface.write_seen(&mut seen)?;
     let viewpoints = images.iter().map(|image| image.viewpoint().into()).collect();
     Ok(ScannedMesh { vertices, triangles, seen, viewpoints, pixels, volume_bytes, agreement: None })
-}
-
-/// The box around what the images show, of the mask's label where there is one.
-fn extent(frames: &[ScanFrame], images: &[DepthImage]) -> Aabb {
-    let mut points: Vec<Point> = Vec::new();
-    for (image, frame) in images.iter().zip(frames) {
-        let [width, height] = image.camera().size();
-        for v in (0..height).step_by(EXTENT_STRIDE) {
-            for u in (0..width).step_by(EXTENT_STRIDE) {
-                let is_shown =
-                    frame.mask().is_none_or(|mask| mask.labels[(v * width + u) as usize] == mask.label);
-                points.extend(image.point(u, v).filter(|_| is_shown).map(|point| image.pose() * point));
-            }
-        }
-    }
-    Aabb::of(&points)
 }

@@ -1,6 +1,7 @@
 //! Runs of the command `hangpose` on shapes with known results.
 
 mod bad_input;
+mod depth;
 mod inspect;
 mod json;
 mod notes;
@@ -8,6 +9,9 @@ mod output;
 mod placement;
 mod shapes;
 mod usage;
+
+#[path = "../images/mod.rs"]
+mod images;
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};

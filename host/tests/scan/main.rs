@@ -1,5 +1,6 @@
 //! Depth images from files to a mesh: formats, errors and the command `hangpose scan`.
 
+mod cloud;
 mod command;
 mod completion;
 mod errors;
@@ -7,5 +8,7 @@ mod formats;
 mod garbage;
 mod scene;
 
+#[path = "../images/mod.rs"]
+mod images;
 #[path = "../random/mod.rs"]
 mod random;

@@ -52,7 +52,8 @@ impl Aabb {
         e.x * e.y + e.y * e.z + e.z * e.x
     }
 
-    pub(crate) fn contains(&self, point: &Point) -> bool {
+    /// Whether a point is in the box or on its border.
+    pub fn contains(&self, point: &Point) -> bool {
         (0..3).all(|i| self.min[i] <= point[i] && point[i] <= self.max[i])
     }
 

@@ -1,7 +1,10 @@
 //! Point clouds.
 
 mod pcd;
+mod write;
 mod xyz;
+
+pub use write::ply as cloud_ply_bytes;
 
 use std::path::Path;
 
