@@ -117,6 +117,9 @@ static void null_and_misaligned(void) {
     REFUSED(hangpose_object_create(work, 0, bad[i], bad[i], NULL, bad[i], NULL));
     hangpose_detail small = {.struct_size = 4};
     REFUSED(hangpose_object_get_info(object, &object_info, &small));
+    o = object;
+    REFUSED(hangpose_object_create(object_memory, object_size, &mesh, &params, NULL, &o, &small));
+    CHECK(o == NULL);
     memory = guarded(hangpose_sample_bytes(10), 0);
     REFUSED(
         hangpose_mesh_sample(bad[i], 0, memory, hangpose_sample_bytes(10), *points, *normals, 10, &detail));
