@@ -274,3 +274,126 @@ impl From<DepthPointsError> for What {
         Self::Points(error)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::{HANGPOSE_FIELD_CHARS, HANGPOSE_MESSAGE_CHARS};
+    use hangpose_core::Stop;
+    use hangpose_core::geometry::Aabb;
+    use std::string::ToString;
+
+    /// Every reason with the longest numbers, and the status and the field that it gives.
+    #[test]
+    fn every_reason_has_a_status_a_place_and_a_message_that_fits() {
+        let (most, pixels, worst) = (usize::MAX, [u32::MAX; 2], -1.175_494_4e-38_f32);
+        let far = Aabb { min: [worst; 3].into(), max: [-worst; 3].into() };
+        let (needed, limit, labels) = (most, most - 1, most);
+        let nothing = What::NoPoints { outside: most, flying: most, grazing: most };
+        let image = |error| What::Image { error, position: [f32::NAN; 3] };
+        let memory = OutOfMemory { needed, given: most };
+        let reasons: [(What, hangpose_status, &str); 37] = [
+            (Failure::Null { argument: "image" }.into(), HANGPOSE_ERROR_NULL, "image"),
+            (CameraError::Size { size: [0, 1] }.into(), HANGPOSE_ERROR_COUNT, "image.camera.width"),
+            (CameraError::Size { size: pixels }.into(), HANGPOSE_ERROR_COUNT, "image.camera.height"),
+            (
+                CameraError::FocalLength { focal: [worst; 2] }.into(),
+                HANGPOSE_ERROR_VALUE,
+                "image.camera.focal",
+            ),
+            (
+                CameraError::PrincipalPoint { centre: [worst; 2], size: pixels }.into(),
+                HANGPOSE_ERROR_VALUE,
+                "image.camera.centre",
+            ),
+            (
+                CameraError::Distortion { distortion: [worst; 5] }.into(),
+                HANGPOSE_ERROR_VALUE,
+                "image.camera.distortion",
+            ),
+            (What::Quaternion { quaternion: [worst; 4] }, HANGPOSE_ERROR_VALUE, "image.quaternion"),
+            (
+                image(DepthImageError::Size { given: most, size: pixels }),
+                HANGPOSE_ERROR_COUNT,
+                "image.depth_count",
+            ),
+            (image(DepthImageError::Scale { scale: worst }), HANGPOSE_ERROR_VALUE, "image.scale"),
+            (image(DepthImageError::Pose), HANGPOSE_ERROR_VALUE, "image.position"),
+            (image(DepthImageError::Blank), HANGPOSE_ERROR_BLANK, "image.depths"),
+            (VolumeSettingsError::Voxel { voxel: worst }.into(), HANGPOSE_ERROR_VALUE, "settings.voxel"),
+            (
+                VolumeSettingsError::Truncation { truncation: worst, range: [worst; 2] }.into(),
+                HANGPOSE_ERROR_VALUE,
+                "settings.truncation",
+            ),
+            (VolumeSettingsError::EmptyCrop { crop: far }.into(), HANGPOSE_ERROR_VALUE, "settings.crop"),
+            (
+                VolumeSettingsError::FarCrop { crop: far, limit: 0.032_765 }.into(),
+                HANGPOSE_ERROR_VALUE,
+                "settings.crop",
+            ),
+            (VolumeSettingsError::DenseWithoutCrop.into(), HANGPOSE_ERROR_NULL, "settings.crop"),
+            (
+                VolumeSettingsError::MaxDepth { max_depth: worst }.into(),
+                HANGPOSE_ERROR_VALUE,
+                "settings.max_depth",
+            ),
+            (
+                VolumeError::Settings(VolumeSettingsError::DenseWithoutCrop).into(),
+                HANGPOSE_ERROR_NULL,
+                "settings.crop",
+            ),
+            (VolumeError::OutOfMemory(memory).into(), HANGPOSE_ERROR_MEMORY, "memory"),
+            (VolumeError::DenseLimit { needed, limit }.into(), HANGPOSE_ERROR_CAPACITY, "blocks"),
+            (
+                VolumeError::Full { limit, used: most, pixels: most, of: most }.into(),
+                HANGPOSE_ERROR_CAPACITY,
+                "volume",
+            ),
+            (VolumeError::Mask { labels, pixels: most }.into(), HANGPOSE_ERROR_COUNT, "image.label_count"),
+            (VolumeError::Stopped(Stop::Cancelled).into(), HANGPOSE_CANCELLED, ""),
+            (VolumeError::Stopped(Stop::WorkLimit).into(), HANGPOSE_WORK_LIMIT, ""),
+            (CompletionError::Sparse.into(), HANGPOSE_ERROR_SPARSE, "volume"),
+            (
+                CompletionError::Settings { thickness: worst, radius: worst }.into(),
+                HANGPOSE_ERROR_VALUE,
+                "settings.thickness",
+            ),
+            (
+                CompletionError::Settings { thickness: 0.0, radius: f32::NAN }.into(),
+                HANGPOSE_ERROR_VALUE,
+                "settings.radius",
+            ),
+            (CompletionError::OutOfMemory(memory).into(), HANGPOSE_ERROR_MEMORY, "memory"),
+            (CompletionError::Stopped(Stop::Cancelled).into(), HANGPOSE_CANCELLED, ""),
+            (IsosurfaceError::OutOfMemory(memory).into(), HANGPOSE_ERROR_MEMORY, "memory"),
+            (IsosurfaceError::TooLarge { count: most, limit }.into(), HANGPOSE_ERROR_COUNT, "mesh"),
+            (IsosurfaceError::Vertices { needed, limit }.into(), HANGPOSE_ERROR_CAPACITY, "vertex_capacity"),
+            (
+                IsosurfaceError::Triangles { needed, limit }.into(),
+                HANGPOSE_ERROR_CAPACITY,
+                "triangle_capacity",
+            ),
+            (
+                DepthPointsError::Setting { field: "least_cosine", value: worst, range: [worst; 2] }.into(),
+                HANGPOSE_ERROR_VALUE,
+                "settings.least_cosine",
+            ),
+            (DepthPointsError::Full { needed, limit }.into(), HANGPOSE_ERROR_CAPACITY, "point_capacity"),
+            (What::NoRoom { max_depth: worst }, HANGPOSE_ERROR_BLANK, "images"),
+            (nothing, HANGPOSE_ERROR_BLANK, "images"),
+        ];
+        for (what, status, field) in reasons {
+            let reason = DepthFailure::from(what);
+            let (text, place) = (reason.to_string(), reason.place());
+            assert_eq!(
+                (reason.status(), std::format!("{}{}", place.prefix, place.field)),
+                (status, field.into())
+            );
+            assert!(text.len() < HANGPOSE_MESSAGE_CHARS, "{} bytes: {text}", text.len());
+            assert!(field.len() < HANGPOSE_FIELD_CHARS);
+            assert_eq!(reason.of_image(3).place().index, Some(3));
+        }
+    }
+}
