@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <time.h>
 
+#include "depth.h"
 #include "fixture.h"
 
 static void sizes_and_alignment(void) {
@@ -445,6 +446,7 @@ int main(void) {
   other_params();
   updates();
   threads();
+  depth_images();
   CHECK(hangpose_status_string(INT32_MIN) != NULL && hangpose_stage_string(UINT32_MAX) != NULL);
   CHECK(hangpose_check_abi(0) == HANGPOSE_ERROR_ABI_VERSION &&
         hangpose_check_abi(hangpose_abi_version()) == HANGPOSE_OK);
