@@ -9,6 +9,9 @@
 //   if (!object) return fail(object.error().message());
 //   hangpose::pose poses[10];
 //   auto found = hangpose::predict(*object, *supporter, params, poses);
+//
+// From depth images: hangpose::volume gives the mesh of an object, hangpose::depth_points the cloud of a
+// supporter. examples-c/07_depth_images.cpp is a complete program.
 #ifndef HANGPOSE_HPP
 #define HANGPOSE_HPP
 
