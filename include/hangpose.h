@@ -641,7 +641,8 @@ typedef struct hangpose_camera {
   float focal[2];
   // cx, cy: principal point, pixels.
   float centre[2];
-  // k1, k2, p1, p2, k3: coefficients of the distortion, no unit; zeros where there is none or it was removed.
+  // k1, k2, p1, p2, k3: coefficients of the distortion, in the order of OpenCV and of plumb_bob in ROS, no unit; zeros
+  // where there is none or it was removed.
   float distortion[5];
 } hangpose_camera;
 

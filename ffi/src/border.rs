@@ -87,7 +87,7 @@ pub(crate) unsafe fn inputs<'a, T: Public>(
     count: u32,
 ) -> Result<&'a [T], Failure> {
     if count == 0 {
-        return Err(Failure::Count { field, count: 0, most: isize::MAX as usize / size_of::<T>() });
+        return Err(Failure::Count { field, count: 0, most: u32::MAX as usize });
     }
     // The first struct tells whether the others have the size of this header.
     check_public(pointer)?;

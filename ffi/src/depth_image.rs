@@ -18,7 +18,8 @@ pub struct hangpose_camera {
     pub focal: [f32; 2],
     /// cx, cy: principal point, pixels.
     pub centre: [f32; 2],
-    /// k1, k2, p1, p2, k3: coefficients of the distortion, no unit; zeros where there is none or it was removed.
+    /// k1, k2, p1, p2, k3: coefficients of the distortion, in the order of OpenCV and of plumb_bob in ROS, no unit; zeros
+    /// where there is none or it was removed.
     pub distortion: [f32; 5],
 }
 
