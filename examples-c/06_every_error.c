@@ -160,6 +160,27 @@ int main(void) {
   hangpose_object_create(object_memory, sizeof object_memory, &mesh, &changed, NULL, &ring, &detail);
   expect(HANGPOSE_ERROR_NO_DISTANCE_FIELD, predict(peg, work, POSES, NULL),
          "an object that was analysed without voxels");
+
+  static unsigned char volume_memory[HANGPOSE_VOLUME_BYTES(1)];
+  static const uint16_t dark[4], wall[4] = {500, 500, 500, 500};
+  hangpose_depth_image image = {.struct_size = sizeof image,
+                                .depth_count = 4,
+                                .scale = 0.001f,
+                                .camera = {2, 2, {2, 2}, {0.5f, 0.5f}, {0}},
+                                .quaternion = {0, 0, 0, 1},
+                                .depths = dark};
+  hangpose_volume_settings settings;
+  hangpose_volume *volume;
+  uint32_t pixels;
+  hangpose_volume_settings_init(&settings, sizeof settings, 0.01f, &detail);
+  hangpose_volume_create(volume_memory, sizeof volume_memory, &settings, 1, &volume, &detail);
+  expect(HANGPOSE_ERROR_BLANK, hangpose_volume_integrate(volume, &image, NULL, &pixels, &detail),
+         "a depth image of a covered camera");
+  image.depths = wall;
+  expect(HANGPOSE_ERROR_CAPACITY, hangpose_volume_integrate(volume, &image, NULL, &pixels, &detail),
+         "a depth image that needs more blocks than the volume has");
+  expect(HANGPOSE_ERROR_SPARSE, hangpose_volume_complete(volume, work, sizeof work, NULL, &detail),
+         "the completion of a sparse volume");
   printf("%d unexpected results\n", surprises);
   return surprises;
 }

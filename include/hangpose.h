@@ -7,10 +7,17 @@
 // a point cloud, once each. (3) hangpose_predict. poses[0] is the best: place the object at its `position` and
 // `quaternion` and release it. examples-c/01_static_memory.c is a complete program.
 //
+// From depth images. The mesh of an object that is held alone: hangpose_volume_room gives the crop box of a dense
+// volume; then hangpose_volume_create, hangpose_volume_integrate once for each image, hangpose_volume_complete and
+// hangpose_volume_surface. The cloud of a supporter: hangpose_depth_points. Each image has the pose of its camera
+// in world coordinates, which become the coordinates of the object or of the supporter.
+// examples-c/07_depth_images.cpp is a complete program.
+//
 // Memory. The caller owns all memory: static, on the heap or on the stack, beginning at any address. Each function
-// that takes memory has a size query; models and predictions also have a macro for static arrays. A model
-// (hangpose_object or hangpose_supporter) lives in the memory in which it was created. There is nothing to free:
-// once the last call that uses a model has returned, its memory may be reused. Models must not be copied or moved.
+// that takes memory has a size query, and all but hangpose_mesh_sample a macro for static arrays. A model
+// (hangpose_object, hangpose_supporter or hangpose_volume) lives in the memory in which it was created. There is
+// nothing to free: once the last call that uses a model has returned, its memory may be reused. Models must not be
+// copied or moved.
 //
 // Pointers. A pointer that is not null must lead to a valid value of its type, or to as many rows as the count
 // beside it says, and nobody else may write there during the call. The library checks what it can: null,
@@ -26,9 +33,9 @@
 //
 // Numbers. Metres, radians, seconds. Frames are right-handed; gravity is along -z unless hangpose_params.gravity
 // says otherwise. Object coordinates are those of the mesh, supporter coordinates those of the cloud. A pose maps
-// object coordinates to supporter coordinates: rotate by the quaternion, then add the position. Quaternions are x,
-// y, z, w. "eq." and "section" refer to the paper, doi:10.1109/LRA.2024.3368297. The same input gives the same bits
-// on every machine.
+// object coordinates to supporter coordinates, and that of a camera maps camera coordinates to world coordinates:
+// rotate by the quaternion, then add the position. Quaternions are x, y, z, w. "eq." and "section" refer to the
+// paper, doi:10.1109/LRA.2024.3368297. The same input gives the same bits on every machine.
 
 #ifndef HANGPOSE_H
 #define HANGPOSE_H
@@ -36,9 +43,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// Bytes for static arrays, constant expressions. They are never less than the size queries hangpose_object_bytes,
-// hangpose_supporter_bytes and hangpose_predict_bytes, and up to half as much again, because they add arrays that are
-// never needed at once. The queries are exact.
+// Bytes for static arrays, constant expressions. They are never less than the size queries of the same names in lower
+// case, and up to half as much again, because they add arrays that are never needed at once. The queries are exact.
 #define HANGPOSE_OBJECT_BYTES(vertices, triangles, samples, voxels)                                  \
   (HANGPOSE_OBJECT_BYTES_AT_LEAST + HANGPOSE_OBJECT_BYTES_EACH_VERTEX * (size_t)(vertices) +        \
    HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE * (size_t)(triangles) +                                      \
@@ -49,7 +55,14 @@
 #define HANGPOSE_PREDICT_BYTES(points, poses)                                                        \
   (HANGPOSE_PREDICT_BYTES_AT_LEAST + HANGPOSE_PREDICT_BYTES_EACH_POINT * (size_t)(points) +         \
    HANGPOSE_PREDICT_BYTES_EACH_POSE * (size_t)(poses))
-// Terms of these macros: upper bounds of the growth of the queries per vertex, triangle, sample, voxel, point and pose.
+#define HANGPOSE_VOLUME_BYTES(blocks)                                                                \
+  (HANGPOSE_VOLUME_BYTES_AT_LEAST + HANGPOSE_VOLUME_BYTES_EACH_BLOCK * (size_t)(blocks))
+#define HANGPOSE_COMPLETE_BYTES(blocks)                                                              \
+  (HANGPOSE_COMPLETE_BYTES_AT_LEAST + HANGPOSE_COMPLETE_BYTES_EACH_BLOCK * (size_t)(blocks))
+#define HANGPOSE_SURFACE_BYTES(blocks)                                                               \
+  (HANGPOSE_SURFACE_BYTES_AT_LEAST + HANGPOSE_SURFACE_BYTES_EACH_BLOCK * (size_t)(blocks))
+// Terms of these macros: upper bounds of the growth of the queries per vertex, triangle, sample, voxel, point, pose and
+// block.
 #define HANGPOSE_OBJECT_BYTES_AT_LEAST 30720
 #define HANGPOSE_OBJECT_BYTES_EACH_VERTEX 24
 #define HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE 180
@@ -60,6 +73,12 @@
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 43008
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 14
 #define HANGPOSE_PREDICT_BYTES_EACH_POSE 396
+#define HANGPOSE_VOLUME_BYTES_AT_LEAST 2048
+#define HANGPOSE_VOLUME_BYTES_EACH_BLOCK 2072
+#define HANGPOSE_COMPLETE_BYTES_AT_LEAST 2048
+#define HANGPOSE_COMPLETE_BYTES_EACH_BLOCK 6784
+#define HANGPOSE_SURFACE_BYTES_AT_LEAST 2048
+#define HANGPOSE_SURFACE_BYTES_EACH_BLOCK 244
 
 // Version of the structs and functions in this header. hangpose_params_init and hangpose_check_abi refuse a
 // program whose header has another version than the library.
@@ -92,6 +111,11 @@ typedef struct hangpose_object hangpose_object;
 // it is used, its memory must not be moved and nobody else may write to it. Any number of threads may use it at
 // the same time, except during hangpose_supporter_update.
 typedef struct hangpose_supporter hangpose_supporter;
+
+// Depth images that are fused into a truncated signed distance volume, at the front of the memory in which it was
+// created. There is nothing to free. As long as it is used, its memory must not be moved and nobody else may write to
+// it. A thread that changes it must be the only one that uses it.
+typedef struct hangpose_volume hangpose_volume;
 
 // Result of a call. 0: done. Above 0: a valid result that is not, or not only, poses. Below 0: an error of the
 // caller; the call did nothing, and hangpose_detail says what to correct.
@@ -202,7 +226,7 @@ typedef struct hangpose_detail {
   uint32_t struct_size;
   // The status that the call returned.
   hangpose_status status;
-  // Index of the wrong vertex, triangle or point, or HANGPOSE_NO_INDEX.
+  // Index of the wrong vertex, triangle, point or image, or HANGPOSE_NO_INDEX.
   uint32_t index;
   // The wrong value; NaN if it is not a number or does not apply.
   double value;
@@ -587,6 +611,99 @@ typedef struct hangpose_prediction {
   uint64_t distance_queries;
 } hangpose_prediction;
 
+// Resolution and extent of a volume, and how far its completion may go. Set the struct with
+// hangpose_volume_settings_init, then change single fields.
+typedef struct hangpose_volume_settings {
+  // sizeof(hangpose_volume_settings), set by hangpose_volume_settings_init.
+  uint32_t struct_size;
+  // 1 to store all of the crop box, so that the volume can be completed; 0 to store only the surroundings of the
+  // surfaces. Default: 0.
+  uint32_t dense;
+  // 1 if a camera sees past everything at pixels without a depth, except for gaps of up to 7 pixels. It holds for an
+  // object that is held alone, with nothing behind it within the camera's range. Else 0, the default.
+  uint32_t missing_is_free;
+  // Distance between neighbouring voxels, metres. The voxels are at its integer multiples in world coordinates.
+  float voxel;
+  // Distance from the surface at which distances are cut off, metres: 2 to 32 voxels. Larger values bear more noise;
+  // walls thinner than the truncation grow inaccurate. Default: 4 voxels.
+  float truncation;
+  // Depth along the z axis of the camera beyond which surfaces are not stored, metres. What is before them is still
+  // free. Default: 5.
+  float max_depth;
+  // For a completion: greatest thickness behind a surface that was seen from one side only and does not curve around
+  // what is behind it, metres. Default: 0.01.
+  float thickness;
+  // For a completion: greatest radius of a ball that surfaces hold from two sides, metres. A bar of a greater radius
+  // stays open. Default: 0.06.
+  float radius;
+  // Two rows of x, y, z: lower and upper corner of the box outside of which nothing is stored, metres, in world
+  // coordinates. Null for everything within 32767 voxels of the origin, which a dense volume cannot store. Default:
+  // null.
+  const float *crop;
+} hangpose_volume_settings;
+
+// A pinhole camera with Brown-Conrady distortion. Its coordinates are those of OpenCV and of optical frames in ROS: x to
+// the right, y down, z forward. Pixel (0, 0) is the centre of the upper left pixel.
+typedef struct hangpose_camera {
+  // Width of the image, pixels.
+  uint32_t width;
+  // Height of the image, pixels.
+  uint32_t height;
+  // fx, fy: focal lengths, pixels.
+  float focal[2];
+  // cx, cy: principal point, pixels.
+  float centre[2];
+  // k1, k2, p1, p2, k3: coefficients of the distortion, in the order of OpenCV and of plumb_bob in ROS, no unit; zeros
+  // where there is none or it was removed.
+  float distortion[5];
+} hangpose_camera;
+
+// A depth image in the caller's arrays, with its camera. The library keeps no pointer to the arrays after the call.
+typedef struct hangpose_depth_image {
+  // sizeof(hangpose_depth_image), set by the caller.
+  uint32_t struct_size;
+  // Number of depths: the width times the height of the camera's image.
+  uint32_t depth_count;
+  // Number of labels: depth_count, or 0 if there are none.
+  uint32_t label_count;
+  // Metres for each unit of depth: 0.001 where the depths are millimetres.
+  float scale;
+  // The camera that took the image.
+  struct hangpose_camera camera;
+  // Pose of the camera: x, y, z of its position, metres, in world coordinates, each within +-1,000,000.
+  float position[3];
+  // Pose of the camera: x, y, z, w of the quaternion that rotates camera coordinates into world coordinates; any length
+  // but zero.
+  float quaternion[4];
+  // Array of depth_count distances along the z axis of the camera, row by row, in units of `scale`. 0 and 65535 mean
+  // that nothing was seen.
+  const uint16_t *depths;
+  // Array of label_count labels, row by row: a segmentation of the image. Surfaces are taken only from pixels with the
+  // label `label`; the others still show where space is free. May be null: all pixels count.
+  const uint8_t *labels;
+  // Label of the pixels that count.
+  uint8_t label;
+} hangpose_depth_image;
+
+// Which pixels of a depth image become points. Set the struct with hangpose_points_settings_init, then change single
+// fields.
+typedef struct hangpose_points_settings {
+  // sizeof(hangpose_points_settings), set by hangpose_points_settings_init.
+  uint32_t struct_size;
+  // Only every so many columns and rows give points; at least 1, the default.
+  uint32_t stride;
+  // Greatest depth along the z axis of the camera, metres. Default: 5.
+  float max_depth;
+  // Standard deviation of the depth at one metre, metres; 0 to 1. It grows with the square of the depth. Default:
+  // 0.0014, that of structured light.
+  float noise;
+  // Least cosine of the angle between the normal and the direction to the camera; 0.01 to 0.99. Default: 0.2.
+  float least_cosine;
+  // Two rows of x, y, z: lower and upper corner of the box outside of which there are no points, metres, in world
+  // coordinates. Null for no box, the default.
+  const float *crop;
+} hangpose_points_settings;
+
 // The call is done.
 #define HANGPOSE_OK 0
 
@@ -595,11 +712,11 @@ typedef struct hangpose_prediction {
 #define HANGPOSE_REJECTED 1
 
 // hangpose_monitor_cancel was called. hangpose_predict returns the best poses found so far; a cancelled analysis
-// creates no model.
+// creates no model, and a cancelled change of a volume leaves it as it was.
 #define HANGPOSE_CANCELLED 2
 
 // The work limit of the monitor was reached, in this call or in the analysis of one of its models. The results
-// found so far are returned.
+// found so far are returned. hangpose_volume_integrate has none, and leaves the volume as it was.
 #define HANGPOSE_WORK_LIMIT 3
 
 // A required pointer is null.
@@ -623,7 +740,7 @@ typedef struct hangpose_prediction {
 // A model or a monitor was never created, was moved, or was overwritten.
 #define HANGPOSE_ERROR_HANDLE (-7)
 
-// The supporter cannot be updated while another thread uses it, or cannot be used while another thread updates it.
+// A supporter or a volume cannot be changed while another thread uses it, or used while another thread changes it.
 #define HANGPOSE_ERROR_BUSY (-8)
 
 // The supporter is empty because its last update was cancelled.
@@ -643,6 +760,16 @@ typedef struct hangpose_prediction {
 
 // The params require a signed distance field, but the object was analysed with voxels = 0.
 #define HANGPOSE_ERROR_NO_DISTANCE_FIELD (-14)
+
+// The result does not fit into the caller's array or into the blocks of the volume. hangpose_detail.minimum is the
+// least capacity that may hold it.
+#define HANGPOSE_ERROR_CAPACITY (-15)
+
+// Depth images show nothing: no pixel has a depth, or none that has one is of use.
+#define HANGPOSE_ERROR_BLANK (-16)
+
+// A sparse volume does not know what is free, so it cannot be completed.
+#define HANGPOSE_ERROR_SPARSE (-17)
 
 // No step: there are poses, or the search was stopped.
 #define HANGPOSE_STAGE_NONE 0
@@ -778,8 +905,8 @@ float hangpose_monitor_progress(const struct hangpose_monitor *monitor);
 // the call only. `monitor` may be null.
 //
 // Returns HANGPOSE_OK; HANGPOSE_WORK_LIMIT with an object that may have more sites or contact candidates than were
-// found; HANGPOSE_CANCELLED or an error without an object. Initialise `*object` to null: without an object it is
-// null or unchanged.
+// found; HANGPOSE_CANCELLED or an error without an object. `*object` is then null, unless its address is part of
+// another argument.
 hangpose_status hangpose_object_create(void *memory,
                                        size_t memory_size,
                                        const struct hangpose_mesh *mesh,
@@ -813,8 +940,8 @@ hangpose_status hangpose_object_get_contact(const struct hangpose_object *object
 // `cloud`, its arrays and `params` are needed during the call only. `monitor` may be null.
 //
 // Returns HANGPOSE_OK; HANGPOSE_WORK_LIMIT with a supporter that may have more sites or contact candidates than
-// were found; HANGPOSE_CANCELLED or an error without a supporter. Initialise `*supporter` to null: without a
-// supporter it is null or unchanged.
+// were found; HANGPOSE_CANCELLED or an error without a supporter. `*supporter` is then null, unless its address is
+// part of another argument.
 hangpose_status hangpose_supporter_create(void *memory,
                                           size_t memory_size,
                                           const struct hangpose_cloud *cloud,
@@ -892,6 +1019,126 @@ hangpose_status hangpose_mesh_sample(const struct hangpose_mesh *mesh,
                                      float *normals,
                                      uint32_t count,
                                      struct hangpose_detail *detail);
+
+// Sets `settings` to the defaults for voxels of this size, metres: about the distance between the points of
+// neighbouring pixels. `struct_size` is sizeof(hangpose_volume_settings). Returns HANGPOSE_OK, or an error.
+hangpose_status hangpose_volume_settings_init(struct hangpose_volume_settings *settings,
+                                              size_t struct_size,
+                                              float voxel,
+                                              struct hangpose_detail *detail);
+
+// Sets `crop`, two rows of x, y, z, to the lower and upper corner of a crop box around an object that is held alone:
+// around what the pixels of `images` show, and around the room behind it that a completion may fill. Metres, in world
+// coordinates. `images` is an array of `image_count` structs, at least 1. Of the `settings`, `dense` and `crop` are
+// not used. Returns HANGPOSE_OK; or an error, such as HANGPOSE_ERROR_BLANK if no pixel of the label shows anything up to
+// settings->max_depth.
+hangpose_status hangpose_volume_room(const struct hangpose_depth_image *images,
+                                     uint32_t image_count,
+                                     const struct hangpose_volume_settings *settings,
+                                     float *crop,
+                                     struct hangpose_detail *detail);
+
+// Returns the number of blocks of 8 x 8 x 8 voxels in the crop box: what a dense volume takes. Returns 0 if `settings`
+// is null, has no crop box or is not valid.
+uint32_t hangpose_volume_blocks(const struct hangpose_volume_settings *settings);
+
+// Returns the bytes of memory for a volume of up to this many blocks of 8 x 8 x 8 voxels, about 2.1 KiB each.
+size_t hangpose_volume_bytes(uint32_t blocks);
+
+// Returns the bytes of working memory that hangpose_volume_complete needs for a volume of up to this many blocks, at
+// most 6.7 KiB each.
+size_t hangpose_complete_bytes(uint32_t blocks);
+
+// Returns the bytes of working memory that hangpose_volume_surface needs for a volume of up to this many blocks, 244
+// each.
+size_t hangpose_surface_bytes(uint32_t blocks);
+
+// Creates an empty volume in `memory` and sets `*volume` to it. It has room for `blocks` blocks of 8 x 8 x 8
+// voxels, 1 to 8388607: hangpose_volume_blocks for a dense volume; for a sparse one, those within the truncation
+// of the surfaces. `memory_size` is at least hangpose_volume_bytes for `blocks`. `settings` are needed during the
+// call only.
+//
+// Returns HANGPOSE_OK, or an error without a volume. `*volume` is then null, unless its address is part of another
+// argument.
+hangpose_status hangpose_volume_create(void *memory,
+                                       size_t memory_size,
+                                       const struct hangpose_volume_settings *settings,
+                                       uint32_t blocks,
+                                       struct hangpose_volume **volume,
+                                       struct hangpose_detail *detail);
+
+// Fuses an image. With settings.missing_is_free, pixels without a depth show free space; else they say nothing. Sets
+// `*pixels` to the number of pixels with the label and a surface within the volume; 0 says that the image shows nothing
+// of it. `image` and its arrays are needed during the call only. `monitor` may be null; a pixel counts as one ray of its
+// work limit.
+//
+// Returns HANGPOSE_OK; or HANGPOSE_CANCELLED, HANGPOSE_WORK_LIMIT or an error, and the volume is as it was before. After
+// HANGPOSE_ERROR_CAPACITY, create a volume of more blocks and fuse all images again.
+hangpose_status hangpose_volume_integrate(struct hangpose_volume *volume,
+                                          const struct hangpose_depth_image *image,
+                                          struct hangpose_monitor *monitor,
+                                          uint32_t *pixels,
+                                          struct hangpose_detail *detail);
+
+// Guesses what no image shows of an object that is held alone, with hangpose_volume_settings.thickness and radius. The
+// surface is then closed. What was seen stays as it is. The volume must be dense, and the cameras must have seen past the
+// object: to a wall, or with settings.missing_is_free. `memory` is working memory of at least hangpose_complete_bytes,
+// needed during the call only. `monitor` may be null.
+//
+// Returns HANGPOSE_OK; or HANGPOSE_CANCELLED or an error, and the volume is as it was before.
+hangpose_status hangpose_volume_complete(struct hangpose_volume *volume,
+                                         void *memory,
+                                         size_t memory_size,
+                                         struct hangpose_monitor *monitor,
+                                         struct hangpose_detail *detail);
+
+// Finds the surface of a volume and sets `mesh` to it, ready for hangpose_object_create: in world coordinates, with
+// corners that are counter-clockwise seen from free space. Set mesh->struct_size before the call, and mesh->viewpoints to
+// the positions of the cameras after it. Where neither an image
+// nor hangpose_volume_complete says what is there, the mesh is open. If no image shows a surface, its counts are 0.
+//
+// `vertices` is an array of `vertex_capacity` rows and `triangles` one of `triangle_capacity` rows, to which `mesh` will
+// point. If both are null, only the counts of `mesh` are set. `seen` is an array of `vertex_capacity` marks: 1 for
+// vertices that images show, 0 for those that were guessed. It may be null. `memory` is working memory of at least
+// hangpose_surface_bytes, needed during the call only. `monitor` may be null.
+//
+// Returns HANGPOSE_OK; or HANGPOSE_CANCELLED or an error, and `mesh` is unchanged.
+hangpose_status hangpose_volume_surface(const struct hangpose_volume *volume,
+                                        void *memory,
+                                        size_t memory_size,
+                                        struct hangpose_monitor *monitor,
+                                        float *vertices,
+                                        uint32_t vertex_capacity,
+                                        uint32_t *triangles,
+                                        uint32_t triangle_capacity,
+                                        uint8_t *seen,
+                                        struct hangpose_mesh *mesh,
+                                        struct hangpose_detail *detail);
+
+// Sets `settings` to the defaults. `struct_size` is sizeof(hangpose_points_settings). Returns HANGPOSE_OK, or an error.
+hangpose_status hangpose_points_settings_init(struct hangpose_points_settings *settings,
+                                              size_t struct_size,
+                                              struct hangpose_detail *detail);
+
+// Writes the points that depth images show, their normals and the viewpoints to arrays and sets `cloud` to them, ready
+// for hangpose_supporter_create: in world coordinates. Left out are pixels that an outline makes up between what is in
+// front and what is behind, and those seen at a flat angle. Set cloud->struct_size before the call; cloud->marks and
+// cloud->region are not changed.
+//
+// `images` is an array of `image_count` structs, at least 1. `points` and `normals` are arrays of `point_capacity` rows
+// of x, y, z; the pixels of all images are always enough. `viewpoints` is an array of `image_count` rows. If all three
+// are null, only the counts of `cloud` are set.
+//
+// Returns HANGPOSE_OK; or an error, such as HANGPOSE_ERROR_BLANK if there are no points, and `cloud` is unchanged.
+hangpose_status hangpose_depth_points(const struct hangpose_depth_image *images,
+                                      uint32_t image_count,
+                                      const struct hangpose_points_settings *settings,
+                                      float *points,
+                                      float *normals,
+                                      uint32_t point_capacity,
+                                      float *viewpoints,
+                                      struct hangpose_cloud *cloud,
+                                      struct hangpose_detail *detail);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -9,6 +9,9 @@
 //   if (!object) return fail(object.error().message());
 //   hangpose::pose poses[10];
 //   auto found = hangpose::predict(*object, *supporter, params, poses);
+//
+// From depth images: hangpose::volume gives the mesh of an object, hangpose::depth_points the cloud of a
+// supporter. examples-c/07_depth_images.cpp is a complete program.
 #ifndef HANGPOSE_HPP
 #define HANGPOSE_HPP
 
@@ -25,7 +28,10 @@ namespace hangpose {
 // A row of an array: x, y, z of a point or direction, or three vertex indices.
 using vec3 = std::array<float, 3>;
 using triangle = std::array<std::uint32_t, 3>;
+// Lower and upper corner of a box, metres.
+using box = std::array<vec3, 2>;
 
+using camera = hangpose_camera;
 using pose = hangpose_pose;
 using limits = hangpose_limits;
 using object_info = hangpose_object_info;
@@ -168,7 +174,7 @@ struct cloud : hangpose_cloud {
     return *this;
   }
   // Limits the places to hang on to a box: its lower and its upper corner, metres.
-  cloud &hang_within(const std::array<vec3, 2> &corners) noexcept {
+  cloud &hang_within(const box &corners) noexcept {
     region = corners[0].data();
     return *this;
   }
@@ -366,6 +372,208 @@ inline result<done> sample(const mesh &mesh, view<vec3> points, view<vec3> norma
   }
   return done{};
 }
+
+// A depth image in the caller's arrays, which must outlive it: depths row by row, in units of `unit` metres.
+struct depth_image : hangpose_depth_image {
+  depth_image(const hangpose_camera &taken_by, view<const std::uint16_t> depth_rows, float unit) noexcept
+      : hangpose_depth_image() {
+    struct_size = sizeof(hangpose_depth_image);
+    camera = taken_by;
+    depth_count = internal::count(depth_rows.size());
+    depths = depth_rows.data();
+    scale = unit;
+    quaternion[3] = 1.0f;
+  }
+  // Sets the pose of the camera in world coordinates: its position, metres, and the quaternion x, y, z, w
+  // that rotates camera coordinates into world coordinates. Without this call they are the same.
+  depth_image &seen_from(const vec3 &at, const std::array<float, 4> &turned) noexcept {
+    for (std::size_t i = 0; i < 3; ++i) position[i] = at[i];
+    for (std::size_t i = 0; i < 4; ++i) quaternion[i] = turned[i];
+    return *this;
+  }
+  // Takes surfaces only from pixels whose label is `wanted`.
+  depth_image &masked(view<const unsigned char> label_rows, unsigned char wanted) noexcept {
+    label_count = internal::count(label_rows.size());
+    labels = label_rows.data();
+    label = wanted;
+    return *this;
+  }
+};
+static_assert(sizeof(depth_image) == sizeof(hangpose_depth_image),
+              "an array of one is an array of the other");
+
+// Resolution and extent of a volume: the defaults for voxels of a size in metres.
+struct volume_settings : hangpose_volume_settings {
+  explicit volume_settings(float voxel_size) noexcept : hangpose_volume_settings() {
+    hangpose_volume_settings_init(this, sizeof(hangpose_volume_settings), voxel_size, nullptr);
+  }
+  // Limits the volume to a box, which must outlive the settings.
+  volume_settings &crop_to(const box &corners) noexcept {
+    crop = corners[0].data();
+    return *this;
+  }
+  // The number of blocks that a dense volume takes.
+  std::uint32_t blocks() const noexcept { return hangpose_volume_blocks(this); }
+};
+
+// A crop box around an object that is held alone, with room for what a completion may fill.
+inline result<box> room(view<const depth_image> images, const volume_settings &settings) noexcept {
+  box corners{};
+  error why;
+  if (hangpose_volume_room(images.data(), internal::count(images.size()), &settings, corners[0].data(),
+                           why.out()) != HANGPOSE_OK)
+    return why;
+  return corners;
+}
+
+// The surface of a volume, in memory from the heap that it owns.
+class surface {
+ public:
+  view<const vec3> vertices() const noexcept { return rows<vec3>(vertices_, counts_.vertex_count); }
+  view<const triangle> triangles() const noexcept {
+    return rows<triangle>(triangles_, counts_.triangle_count);
+  }
+  // For each vertex 1 if an image shows it, 0 if it was guessed.
+  view<const unsigned char> seen() const noexcept { return rows<unsigned char>(seen_, counts_.vertex_count); }
+
+ private:
+  friend class volume;
+  surface() noexcept : counts_() { counts_.struct_size = sizeof counts_; }
+  template <class T>
+  static view<const T> rows(const memory &of, std::uint32_t count) noexcept {
+    return {static_cast<const T *>(of.data()), count};
+  }
+  memory vertices_, triangles_, seen_;
+  hangpose_mesh counts_;
+};
+
+// Depth images that are fused into a truncated signed distance volume.
+class volume {
+ public:
+  // Creates an empty volume in memory from the heap, which it owns. It has room for so many blocks: for a
+  // dense volume settings.blocks().
+  static result<volume> create(const volume_settings &settings, std::uint32_t blocks) noexcept {
+    memory own = memory::own(hangpose_volume_bytes(blocks));
+    if (own.data() == nullptr) return internal::no_memory();
+    return create(settings, blocks, std::move(own));
+  }
+  // Creates it in `room`, which has at least hangpose_volume_bytes or HANGPOSE_VOLUME_BYTES.
+  static result<volume> create(const volume_settings &settings, std::uint32_t blocks, memory room) noexcept {
+    volume made;
+    error why;
+    hangpose_volume *handle = nullptr;
+    hangpose_volume_create(room.data(), room.size(), &settings, blocks, &handle, why.out());
+    if (handle == nullptr) return why;
+    made.handle_.reset(handle);
+    made.memory_ = std::move(room);
+    made.blocks_ = blocks;
+    return made;
+  }
+
+  // Fuses an image. The value is the number of pixels with a surface within the volume. After an error, the
+  // volume is unchanged.
+  result<std::uint32_t> integrate(const depth_image &image, monitor *watch = nullptr) noexcept {
+    std::uint32_t pixels = 0;
+    error why;
+    if (hangpose_volume_integrate(handle_.get(), &image, internal::get(watch), &pixels, why.out()) !=
+        HANGPOSE_OK)
+      return why;
+    return pixels;
+  }
+  // Guesses what no image shows of an object that is held alone, with `work` of at least
+  // hangpose_complete_bytes. After an error, the volume is unchanged.
+  result<done> complete(const memory &work, monitor *watch = nullptr) noexcept {
+    error why;
+    if (hangpose_volume_complete(handle_.get(), work.data(), work.size(), internal::get(watch), why.out()) !=
+        HANGPOSE_OK)
+      return why;
+    return done{};
+  }
+  // The same with working memory from the heap.
+  result<done> complete(monitor *watch = nullptr) noexcept {
+    memory work = memory::own(hangpose_complete_bytes(blocks_));
+    if (work.data() == nullptr) return internal::no_memory();
+    return complete(work, watch);
+  }
+  // Finds the surface, in memory from the heap.
+  result<surface> find_surface(monitor *watch = nullptr) const noexcept {
+    memory work = memory::own(hangpose_surface_bytes(blocks_));
+    if (work.data() == nullptr) return internal::no_memory();
+    surface found;
+    error why;
+    hangpose_mesh &counts = found.counts_;
+    auto find = [&] {
+      return hangpose_volume_surface(
+          get(), work.data(), work.size(), internal::get(watch), static_cast<float *>(found.vertices_.data()),
+          counts.vertex_count, static_cast<std::uint32_t *>(found.triangles_.data()), counts.triangle_count,
+          static_cast<unsigned char *>(found.seen_.data()), &counts, why.out());
+    };
+    if (find() != HANGPOSE_OK) return why;
+    found.vertices_ = memory::own(counts.vertex_count * sizeof(vec3));
+    found.triangles_ = memory::own(counts.triangle_count * sizeof(triangle));
+    found.seen_ = memory::own(counts.vertex_count);
+    if (found.vertices_.data() == nullptr || found.triangles_.data() == nullptr ||
+        found.seen_.data() == nullptr)
+      return internal::no_memory();
+    if (find() != HANGPOSE_OK) return why;
+    return found;
+  }
+  const hangpose_volume *get() const noexcept { return handle_.get(); }
+
+ private:
+  volume() noexcept = default;
+  memory memory_;
+  internal::handle<hangpose_volume> handle_;
+  std::uint32_t blocks_ = 0;
+};
+
+// Which pixels of a depth image become points, set to the defaults.
+struct points_settings : hangpose_points_settings {
+  points_settings() noexcept : hangpose_points_settings() {
+    hangpose_points_settings_init(this, sizeof(hangpose_points_settings), nullptr);
+  }
+  // Limits the points to a box, which must outlive the settings.
+  points_settings &crop_to(const box &corners) noexcept {
+    crop = corners[0].data();
+    return *this;
+  }
+};
+
+// The points that depth images show, in memory from the heap that it owns: the cloud of a supporter.
+class depth_points {
+ public:
+  static result<depth_points> create(view<const depth_image> images,
+                                     const points_settings &settings = {}) noexcept {
+    depth_points found;
+    error why;
+    const auto count = internal::count(images.size());
+    std::size_t pixels = 0;
+    for (const auto &image : images) pixels += image.depth_count;
+    found.points_ = memory::own(pixels * sizeof(vec3));
+    found.normals_ = memory::own(pixels * sizeof(vec3));
+    found.viewpoints_ = memory::own(count * sizeof(vec3));
+    if (found.points_.data() == nullptr || found.normals_.data() == nullptr ||
+        found.viewpoints_.data() == nullptr)
+      return internal::no_memory();
+    if (hangpose_depth_points(images.data(), count, &settings, static_cast<float *>(found.points_.data()),
+                              static_cast<float *>(found.normals_.data()), internal::count(pixels),
+                              static_cast<float *>(found.viewpoints_.data()), &found.counts_,
+                              why.out()) != HANGPOSE_OK)
+      return why;
+    return found;
+  }
+  view<const vec3> points() const noexcept { return rows(points_, counts_.point_count); }
+  view<const vec3> normals() const noexcept { return rows(normals_, counts_.point_count); }
+  view<const vec3> viewpoints() const noexcept { return rows(viewpoints_, counts_.viewpoint_count); }
+
+ private:
+  depth_points() noexcept : counts_() { counts_.struct_size = sizeof counts_; }
+  static view<const vec3> rows(const memory &of, std::uint32_t count) noexcept {
+    return {static_cast<const vec3 *>(of.data()), count};
+  }
+  memory points_, normals_, viewpoints_;
+  hangpose_cloud counts_;
+};
 
 #if defined(EIGEN_GEOMETRY_MODULE_H) || defined(EIGEN_GEOMETRY_H)
 

@@ -36,7 +36,8 @@ readelf -d "$shared" | grep -q "SONAME.*\[libhangpose.so.[0-9]*\]" || fail "libh
 say "libhangpose.a has no allocator, no unwinding, no mutable state, and no global symbols other than hangpose_*"
 
 # ---- the examples, through CMake
-examples=(01_static_memory "02_mesh_file samples/mug.obj samples/hook.obj" 03_two_threads 04_control_loop 05_eigen 06_every_error)
+examples=(01_static_memory "02_mesh_file samples/mug.obj samples/hook.obj" 03_two_threads 04_control_loop 05_eigen 06_every_error
+    07_depth_images)
 run_examples() {
     local example
     for example in "${examples[@]}"; do quiet "$1"/$example; done

@@ -5,8 +5,8 @@
 //! its type, or to as many as the count says, and nobody else writes there during the call.
 
 use crate::detail::hangpose_detail;
-use crate::failure::Failure;
-use crate::status::hangpose_status;
+use crate::failure::{Failure, Reason};
+use crate::status::{HANGPOSE_OK, HANGPOSE_WORK_LIMIT, hangpose_status};
 
 /// A struct that C fills in or reads.
 ///
@@ -76,17 +76,38 @@ pub(crate) unsafe fn output<'a, T: Public>(pointer: *mut T) -> Result<&'a mut T,
     Ok(unsafe { &mut *pointer })
 }
 
-/// The address at which the call stores a pointer.
+/// `count` structs that C filled in, at least one.
 ///
 /// # Safety
 ///
 /// The obligations of the caller at the top of this file.
-pub(crate) unsafe fn place<'a, T>(
-    argument: &'static str,
-    pointer: *mut *mut T,
-) -> Result<&'a mut *mut T, Failure> {
+pub(crate) unsafe fn inputs<'a, T: Public>(
+    field: &'static str,
+    pointer: *const T,
+    count: u32,
+) -> Result<&'a [T], Failure> {
+    if count == 0 {
+        return Err(Failure::Count { field, count: 0, most: u32::MAX as usize });
+    }
+    // The first struct tells whether the others have the size of this header.
+    check_public(pointer)?;
+    check_count::<T>(field, count)?;
+    // SAFETY: not null, aligned, and short enough for a slice; every bit pattern is a `T`. The caller vouches for the
+    // rest.
+    let structs = unsafe { core::slice::from_raw_parts(pointer, count as usize) };
+    structs.iter().try_for_each(|one| check_public(one))?;
+    Ok(structs)
+}
+
+/// The address at which the call stores a pointer or a number.
+///
+/// # Safety
+///
+/// The obligations of the caller at the top of this file, `T` is a pointer or a number, and the address does not overlap
+/// what the call reads.
+pub(crate) unsafe fn place<'a, T>(argument: &'static str, pointer: *mut T) -> Result<&'a mut T, Failure> {
     check(argument, pointer)?;
-    // SAFETY: not null and aligned, and every bit pattern is a pointer. The caller vouches for the rest.
+    // SAFETY: not null and aligned, and every bit pattern is a `T`. The caller vouches for the rest.
     Ok(unsafe { &mut *pointer })
 }
 
@@ -110,20 +131,37 @@ pub(crate) unsafe fn rows<'a, T>(
     Ok(unsafe { core::slice::from_raw_parts(pointer.cast(), count as usize) })
 }
 
-/// `count` bytes.
+/// `count` numbers.
 ///
 /// # Safety
 ///
-/// The obligations of the caller at the top of this file.
-pub(crate) unsafe fn bytes<'a>(
+/// The obligations of the caller at the top of this file, and `T` is `u8` or `u16`.
+pub(crate) unsafe fn numbers<'a, T>(
     argument: &'static str,
-    pointer: *const u8,
+    pointer: *const T,
     count: u32,
-) -> Result<&'a [u8], Failure> {
+) -> Result<&'a [T], Failure> {
+    check(argument, pointer)?;
+    check_count::<T>(argument, count)?;
+    // SAFETY: not null, aligned, and short enough for a slice; every bit pattern is a `T`. The caller vouches for the
+    // rest.
+    Ok(unsafe { core::slice::from_raw_parts(pointer, count as usize) })
+}
+
+/// `count` bytes for the call to write.
+///
+/// # Safety
+///
+/// The obligations of the caller at the top of this file, and the bytes do not overlap what the call reads.
+pub(crate) unsafe fn bytes_mut<'a>(
+    argument: &'static str,
+    pointer: *mut u8,
+    count: u32,
+) -> Result<&'a mut [u8], Failure> {
     check(argument, pointer)?;
     check_count::<u8>(argument, count)?;
-    // SAFETY: not null, and short enough for a slice. The caller vouches for the rest.
-    Ok(unsafe { core::slice::from_raw_parts(pointer, count as usize) })
+    // SAFETY: as in `numbers`, and nobody else uses them. The caller vouches for the rest.
+    Ok(unsafe { core::slice::from_raw_parts_mut(pointer, count as usize) })
 }
 
 /// `count` rows of three numbers for the call to write.
@@ -217,9 +255,9 @@ pub(crate) fn keep_apart(regions: &[Region]) -> Result<(), Failure> {
 /// # Safety
 ///
 /// The obligations of the caller at the top of this file.
-pub(crate) unsafe fn report(
+pub(crate) unsafe fn report<R: Reason>(
     detail: *mut hangpose_detail,
-    call: impl FnOnce() -> Result<hangpose_status, Failure>,
+    call: impl FnOnce() -> Result<hangpose_status, R>,
 ) -> hangpose_status {
     if !detail.is_null()
         && let Err(failure) = check_public(detail.cast_const())
@@ -227,15 +265,42 @@ pub(crate) unsafe fn report(
         return failure.status();
     }
     let result = call();
-    let is_apart = !matches!(result, Err(Failure::Overlap { written: DETAIL, .. }));
+    let is_apart =
+        !matches!(&result, Err(reason) if reason.overlap().is_some_and(|[written, _]| written == DETAIL));
     // SAFETY: checked above. A detail that overlaps another argument is not written.
     if is_apart && let Some(detail) = unsafe { detail.as_mut() } {
         match &result {
             Ok(status) => detail.answer(*status),
-            Err(failure) => detail.failure(failure),
+            Err(reason) => detail.failure(reason),
         }
     }
-    result.unwrap_or_else(|failure| failure.status())
+    result.unwrap_or_else(|reason| reason.status())
+}
+
+/// Does what [`report`] does for a call that stores a model at `place`, and stores null there if it makes none. A place
+/// that overlaps another argument is not written.
+///
+/// # Safety
+///
+/// The obligations of the caller at the top of this file.
+pub(crate) unsafe fn report_model<T, R: Reason>(
+    argument: &'static str,
+    place: *mut *mut T,
+    detail: *mut hangpose_detail,
+    call: impl FnOnce() -> Result<hangpose_status, R>,
+) -> hangpose_status {
+    let mut is_apart = true;
+    let watched = || {
+        call().inspect_err(|reason| is_apart = !reason.overlap().is_some_and(|both| both.contains(&argument)))
+    };
+    // SAFETY: those of this function.
+    let status = unsafe { report(detail, watched) };
+    let is_made = matches!(status, HANGPOSE_OK | HANGPOSE_WORK_LIMIT);
+    if !is_made && is_apart && check(argument, place.cast_const()).is_ok() {
+        // SAFETY: not null and aligned. The caller vouches for the rest.
+        unsafe { place.write(core::ptr::null_mut()) };
+    }
+    status
 }
 
 // SAFETY: `repr(C)` over numbers, `struct_size` first.

@@ -1,4 +1,4 @@
-use crate::failure::{Failure, Place};
+use crate::failure::{Place, Reason};
 use crate::status::{hangpose_status, status_text};
 use core::ffi::c_char;
 use core::fmt::Write;
@@ -19,7 +19,7 @@ pub struct hangpose_detail {
     pub struct_size: u32,
     /// The status that the call returned.
     pub status: hangpose_status,
-    /// Index of the wrong vertex, triangle or point, or HANGPOSE_NO_INDEX.
+    /// Index of the wrong vertex, triangle, point or image, or HANGPOSE_NO_INDEX.
     pub index: u32,
     /// The wrong value; NaN if it is not a number or does not apply.
     pub value: f64,
@@ -40,8 +40,8 @@ impl hangpose_detail {
     }
 
     /// Fills in the detail of a failed call, which did nothing.
-    pub(crate) fn failure(&mut self, failure: &Failure) {
-        self.set(failure.status(), failure.place(), failure);
+    pub(crate) fn failure<R: Reason>(&mut self, reason: &R) {
+        self.set(reason.status(), reason.place(), reason);
     }
 
     fn set(&mut self, status: hangpose_status, place: Place, message: &dyn core::fmt::Display) {
@@ -84,6 +84,7 @@ impl Write for Writer<'_> {
 mod tests {
     extern crate std;
     use super::*;
+    use crate::failure::Failure;
     use hangpose_core::ParamsError;
     use hangpose_core::geometry::{CloudError, MeshError};
     use std::string::ToString;

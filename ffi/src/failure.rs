@@ -42,8 +42,16 @@ pub(crate) struct Place {
     pub(crate) range: Option<[f64; 2]>,
 }
 
-impl Failure {
-    pub(crate) fn status(&self) -> hangpose_status {
+/// What a detail says of a call that did nothing.
+pub(crate) trait Reason: Display {
+    fn status(&self) -> hangpose_status;
+    fn place(&self) -> Place;
+    /// The two arguments that overlap, the one that is written first, if that is the reason.
+    fn overlap(&self) -> Option<[&'static str; 2]>;
+}
+
+impl Reason for Failure {
+    fn status(&self) -> hangpose_status {
         match self {
             Self::Null { .. } => HANGPOSE_ERROR_NULL,
             Self::Misaligned { .. } => HANGPOSE_ERROR_MISALIGNED,
@@ -78,7 +86,7 @@ impl Failure {
         }
     }
 
-    pub(crate) fn place(&self) -> Place {
+    fn place(&self) -> Place {
         match *self {
             Self::Null { argument }
             | Self::Misaligned { argument, .. }
@@ -113,25 +121,32 @@ impl Failure {
             Self::Cancelled => Place::default(),
         }
     }
+
+    fn overlap(&self) -> Option<[&'static str; 2]> {
+        match *self {
+            Self::Overlap { written, other } => Some([written, other]),
+            _ => None,
+        }
+    }
 }
 
 const COORDINATES: [f64; 2] = [-(MAX_COORDINATE as f64), MAX_COORDINATE as f64];
 
 impl Place {
-    fn of(field: &'static str) -> Self {
+    pub(crate) fn of(field: &'static str) -> Self {
         Self { field, ..Self::default() }
     }
 
-    fn value(self, value: f64) -> Self {
+    pub(crate) fn value(self, value: f64) -> Self {
         Self { value: Some(value), ..self }
     }
 
-    fn range(self, range: [f64; 2]) -> Self {
+    pub(crate) fn range(self, range: [f64; 2]) -> Self {
         Self { range: Some(range), ..self }
     }
 
     /// The first of three numbers that is not a valid coordinate.
-    fn coordinate(self, index: Option<usize>, position: [f32; 3]) -> Self {
+    pub(crate) fn coordinate(self, index: Option<usize>, position: [f32; 3]) -> Self {
         let bad = position.into_iter().find(|x| x.is_nan() || x.abs() > MAX_COORDINATE);
         Self { index, value: bad.map(f64::from), range: Some(COORDINATES), ..self }
     }

@@ -33,7 +33,7 @@ pub(crate) unsafe fn get<M: Model, T: Public>(
         Ok(HANGPOSE_OK)
     };
     // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, get) }
+    unsafe { report::<Failure>(detail, get) }
 }
 
 /// The item with this index.

@@ -8,7 +8,7 @@ use core::mem::MaybeUninit;
 use core::sync::atomic::{AtomicU32, Ordering};
 
 /// A type that a handle can hold.
-pub(crate) trait Model: Copy {
+pub(crate) trait Model {
     /// First word of a handle of this kind.
     const MAGIC: u32;
     /// Name of the argument in the header.
@@ -47,15 +47,17 @@ impl<M: Model> Handle<M> {
     /// # Safety
     ///
     /// Those of [`memory`], and no call uses a handle that was in this memory before.
-    pub(crate) unsafe fn create(
+    pub(crate) unsafe fn create<R: From<Failure>>(
         pointer: *mut u8,
         size: usize,
         needed: usize,
-        build: impl FnOnce(&'static mut [u8]) -> Result<M, Failure>,
-    ) -> Result<*mut Self, Failure> {
+        build: impl FnOnce(&'static mut [u8]) -> Result<M, R>,
+    ) -> Result<*mut Self, R> {
+        // Memory that is reused or given back ends a model without a destructor.
+        const { assert!(!core::mem::needs_drop::<M>()) };
         let needed = needed.saturating_add(Self::BYTES);
         if size < needed {
-            return Err(Failure::Memory { argument: "memory", needed, given: size });
+            return Err(Failure::Memory { argument: "memory", needed, given: size }.into());
         }
         // SAFETY: those of this function.
         let all = unsafe { memory(pointer, size) }?;
@@ -127,6 +129,21 @@ impl<M: Model> Handle<M> {
         }
     }
 
+    /// The model for one call alone, as long as the guard exists.
+    ///
+    /// # Safety
+    ///
+    /// Those of [`Self::share`].
+    pub(crate) unsafe fn claim<'a>(pointer: *const Self) -> Result<Claimed<'a, M>, Failure> {
+        // SAFETY: those of this function.
+        let handle = unsafe { Self::from_pointer(pointer) }?;
+        match handle.users.compare_exchange(0, BUILDING, Ordering::Acquire, Ordering::Relaxed) {
+            Ok(_) => Ok(Claimed { handle }),
+            Err(EMPTY) => Err(Failure::Empty { argument: M::ARGUMENT }),
+            Err(_) => Err(Failure::Busy { argument: M::ARGUMENT }),
+        }
+    }
+
     /// Builds the model again in the same memory. If `check` finds that the new model cannot be built in the given
     /// number of bytes, the old model stays. If `build` then fails, the handle is empty.
     ///
@@ -168,6 +185,29 @@ impl<M: Model> Handle<M> {
 
     fn written_regions(&self) -> [Region; 2] {
         [Region::written(M::ARGUMENT, self, 1), Region::written(M::ARGUMENT, self.arena, self.arena_size)]
+    }
+}
+
+/// A model that one call may change.
+pub(crate) struct Claimed<'a, M: Model> {
+    handle: &'a Handle<M>,
+}
+
+impl<M: Model> Claimed<'_, M> {
+    pub(crate) fn model(&mut self) -> &mut M {
+        // SAFETY: a handle that had no users has a model, and only this guard refers to it.
+        unsafe { (*self.handle.model.get()).assume_init_mut() }
+    }
+
+    /// The memory of the model as far as it is known: all of it except a few bytes in front of the handle.
+    pub(crate) fn regions(&self) -> [Region; 2] {
+        self.handle.written_regions()
+    }
+}
+
+impl<M: Model> Drop for Claimed<'_, M> {
+    fn drop(&mut self) {
+        self.handle.users.store(0, Ordering::Release);
     }
 }
 

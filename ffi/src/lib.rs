@@ -12,6 +12,9 @@
 
 mod border;
 mod cloud;
+mod depth_failure;
+mod depth_image;
+mod depth_points;
 mod detail;
 mod failure;
 mod getter;
@@ -29,8 +32,12 @@ mod sample;
 mod status;
 mod supporter;
 mod version;
+mod volume;
+mod volume_settings;
 
 pub use cloud::hangpose_cloud;
+pub use depth_image::*;
+pub use depth_points::*;
 pub use detail::{HANGPOSE_FIELD_CHARS, HANGPOSE_MESSAGE_CHARS, HANGPOSE_NO_INDEX, hangpose_detail};
 pub use limits::*;
 pub use mesh::hangpose_mesh;
@@ -43,3 +50,5 @@ pub use sample::{hangpose_mesh_sample, hangpose_sample_bytes};
 pub use status::*;
 pub use supporter::*;
 pub use version::*;
+pub use volume::*;
+pub use volume_settings::*;

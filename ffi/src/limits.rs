@@ -1,6 +1,7 @@
 use crate::border::{DETAIL, Public, Region, input, keep_apart, optional_input, output, report};
 use crate::cloud::hangpose_cloud;
 use crate::detail::hangpose_detail;
+use crate::failure::Failure;
 use crate::mesh::hangpose_mesh;
 use crate::object::ObjectHandle;
 use crate::params::hangpose_params;
@@ -83,7 +84,7 @@ pub unsafe extern "C" fn hangpose_limits_of(
         Ok(HANGPOSE_OK)
     };
     // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, set) }
+    unsafe { report::<Failure>(detail, set) }
 }
 
 /// Returns the bytes of memory for any object within `limits`; depends on vertices, triangles, samples and voxels.

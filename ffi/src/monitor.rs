@@ -56,7 +56,7 @@ pub unsafe extern "C" fn hangpose_monitor_init(
         Ok(HANGPOSE_OK)
     };
     // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, init) }
+    unsafe { report::<Failure>(detail, init) }
 }
 
 /// Makes the call that uses this monitor stop soon; later calls stop at once, until hangpose_monitor_init. Does

@@ -1,4 +1,4 @@
-use crate::border::{DETAIL, Public, Region, input, keep_apart, place, report};
+use crate::border::{DETAIL, Public, Region, input, keep_apart, place, report_model};
 use crate::detail::hangpose_detail;
 use crate::failure::Failure;
 use crate::getter::{at, get};
@@ -31,8 +31,8 @@ impl Model for Object<'static> {
 /// the call only. `monitor` may be null.
 ///
 /// Returns HANGPOSE_OK; HANGPOSE_WORK_LIMIT with an object that may have more sites or contact candidates than were
-/// found; HANGPOSE_CANCELLED or an error without an object. Initialise `*object` to null: without an object it is
-/// null or unchanged.
+/// found; HANGPOSE_CANCELLED or an error without an object. `*object` is then null, unless its address is part of
+/// another argument.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_object_create(
     memory: *mut c_void,
@@ -62,7 +62,6 @@ pub unsafe extern "C" fn hangpose_object_create(
         // SAFETY: the caller vouches for the pointers, and what is written is apart from the rest.
         let (object, params, monitor) =
             unsafe { (place("object", object)?, input(params)?, monitor::of(monitor)?) };
-        *object = core::ptr::null_mut();
         let params = params.to_core()?;
         mesh.check_counts()?;
         let limits = Limits {
@@ -85,7 +84,7 @@ pub unsafe extern "C" fn hangpose_object_create(
         Ok(stopped(unsafe { ObjectHandle::share(handle) }?.model().stopped()))
     };
     // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, create) }
+    unsafe { report_model::<_, Failure>("object", object, detail, create) }
 }
 
 /// Result of the analysis of an object.

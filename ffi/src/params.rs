@@ -153,7 +153,7 @@ pub unsafe extern "C" fn hangpose_params_init(
         Ok(HANGPOSE_OK)
     };
     // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, init) }
+    unsafe { report::<Failure>(detail, init) }
 }
 
 impl hangpose_params {
@@ -313,6 +313,7 @@ impl hangpose_params {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::failure::Reason;
 
     #[test]
     fn both_profiles_come_back_as_they_were() {

@@ -148,7 +148,7 @@ pub unsafe extern "C" fn hangpose_predict(
         })
     };
     // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, call) }
+    unsafe { report::<Failure>(detail, call) }
 }
 
 /// Splits `memory` into `count` poses of the core, whose layout is not that of C, and the rest, of at least

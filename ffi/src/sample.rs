@@ -62,5 +62,5 @@ pub unsafe extern "C" fn hangpose_mesh_sample(
         Ok(HANGPOSE_OK)
     };
     // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, sample) }
+    unsafe { report::<Failure>(detail, sample) }
 }

@@ -12,10 +12,10 @@ pub const HANGPOSE_OK: hangpose_status = 0;
 /// none.
 pub const HANGPOSE_REJECTED: hangpose_status = 1;
 /// hangpose_monitor_cancel was called. hangpose_predict returns the best poses found so far; a cancelled analysis
-/// creates no model.
+/// creates no model, and a cancelled change of a volume leaves it as it was.
 pub const HANGPOSE_CANCELLED: hangpose_status = 2;
 /// The work limit of the monitor was reached, in this call or in the analysis of one of its models. The results
-/// found so far are returned.
+/// found so far are returned. hangpose_volume_integrate has none, and leaves the volume as it was.
 pub const HANGPOSE_WORK_LIMIT: hangpose_status = 3;
 
 /// A required pointer is null.
@@ -32,7 +32,7 @@ pub const HANGPOSE_ERROR_MEMORY: hangpose_status = -5;
 pub const HANGPOSE_ERROR_OVERLAP: hangpose_status = -6;
 /// A model or a monitor was never created, was moved, or was overwritten.
 pub const HANGPOSE_ERROR_HANDLE: hangpose_status = -7;
-/// The supporter cannot be updated while another thread uses it, or cannot be used while another thread updates it.
+/// A supporter or a volume cannot be changed while another thread uses it, or used while another thread changes it.
 pub const HANGPOSE_ERROR_BUSY: hangpose_status = -8;
 /// The supporter is empty because its last update was cancelled.
 pub const HANGPOSE_ERROR_EMPTY: hangpose_status = -9;
@@ -46,6 +46,13 @@ pub const HANGPOSE_ERROR_INDEX: hangpose_status = -12;
 pub const HANGPOSE_ERROR_DEGENERATE: hangpose_status = -13;
 /// The params require a signed distance field, but the object was analysed with voxels = 0.
 pub const HANGPOSE_ERROR_NO_DISTANCE_FIELD: hangpose_status = -14;
+/// The result does not fit into the caller's array or into the blocks of the volume. hangpose_detail.minimum is the
+/// least capacity that may hold it.
+pub const HANGPOSE_ERROR_CAPACITY: hangpose_status = -15;
+/// Depth images show nothing: no pixel has a depth, or none that has one is of use.
+pub const HANGPOSE_ERROR_BLANK: hangpose_status = -16;
+/// A sparse volume does not know what is free, so it cannot be completed.
+pub const HANGPOSE_ERROR_SPARSE: hangpose_status = -17;
 
 /// The step of the method that left no pose, one of HANGPOSE_STAGE_*.
 pub type hangpose_stage = u32;
@@ -123,13 +130,16 @@ pub(crate) fn status_text(status: hangpose_status) -> &'static CStr {
         HANGPOSE_ERROR_MEMORY => c"the memory is too small",
         HANGPOSE_ERROR_OVERLAP => c"arguments overlap in memory",
         HANGPOSE_ERROR_HANDLE => c"a handle is not valid",
-        HANGPOSE_ERROR_BUSY => c"the supporter is in use by another thread",
+        HANGPOSE_ERROR_BUSY => c"a model is in use by another thread",
         HANGPOSE_ERROR_EMPTY => c"the supporter is empty",
         HANGPOSE_ERROR_COUNT => c"a count is out of range",
         HANGPOSE_ERROR_VALUE => c"a value is out of range",
         HANGPOSE_ERROR_INDEX => c"an index is out of range",
         HANGPOSE_ERROR_DEGENERATE => c"every triangle has zero area",
         HANGPOSE_ERROR_NO_DISTANCE_FIELD => c"the object was analysed without voxels",
+        HANGPOSE_ERROR_CAPACITY => c"the result does not fit",
+        HANGPOSE_ERROR_BLANK => c"the depth images show nothing",
+        HANGPOSE_ERROR_SPARSE => c"the volume is sparse",
         _ => c"unknown status",
     }
 }
@@ -188,10 +198,10 @@ mod tests {
 
     #[test]
     fn every_status_has_words() {
-        for status in -14..=3 {
+        for status in -17..=3 {
             assert_ne!(status_text(status), c"unknown status", "{status}");
         }
-        for status in [i32::MIN, -15, 4, i32::MAX] {
+        for status in [i32::MIN, -18, 4, i32::MAX] {
             assert_eq!(status_text(status), c"unknown status");
         }
     }

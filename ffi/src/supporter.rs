@@ -1,4 +1,4 @@
-use crate::border::{DETAIL, Public, Region, input, keep_apart, place, report};
+use crate::border::{DETAIL, Public, Region, input, keep_apart, place, report, report_model};
 use crate::cloud::hangpose_cloud;
 use crate::detail::hangpose_detail;
 use crate::failure::Failure;
@@ -37,8 +37,8 @@ fn model_bytes(cloud: &hangpose_cloud) -> usize {
 /// `cloud`, its arrays and `params` are needed during the call only. `monitor` may be null.
 ///
 /// Returns HANGPOSE_OK; HANGPOSE_WORK_LIMIT with a supporter that may have more sites or contact candidates than
-/// were found; HANGPOSE_CANCELLED or an error without a supporter. Initialise `*supporter` to null: without a
-/// supporter it is null or unchanged.
+/// were found; HANGPOSE_CANCELLED or an error without a supporter. `*supporter` is then null, unless its address is
+/// part of another argument.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_supporter_create(
     memory: *mut c_void,
@@ -70,7 +70,6 @@ pub unsafe extern "C" fn hangpose_supporter_create(
         // SAFETY: the caller vouches for the pointers, and what is written is apart from the rest.
         let (supporter, params, monitor) =
             unsafe { (place("supporter", supporter)?, input(params)?, monitor::of(monitor)?) };
-        *supporter = core::ptr::null_mut();
         let params = params.to_core()?;
         cloud.check_count()?;
         let none = Monitor::new();
@@ -86,7 +85,7 @@ pub unsafe extern "C" fn hangpose_supporter_create(
         Ok(stopped(unsafe { SupporterHandle::share(handle) }?.model().stopped()))
     };
     // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, create) }
+    unsafe { report_model::<_, Failure>("supporter", supporter, detail, create) }
 }
 
 /// Replaces the cloud of `supporter` by a new one and analyses it in the same memory. `monitor` may be null. No
@@ -145,7 +144,7 @@ pub unsafe extern "C" fn hangpose_supporter_update(
         Ok(answer)
     };
     // SAFETY: the caller vouches for the detail.
-    unsafe { report(detail, update) }
+    unsafe { report::<Failure>(detail, update) }
 }
 
 /// Result of the analysis of a supporter.

@@ -1,4 +1,4 @@
-use crate::failure::Failure;
+use crate::failure::{Failure, Reason};
 use core::ffi::{CStr, c_char};
 
 /// Version of the structs and functions in this header. hangpose_params_init and hangpose_check_abi refuse a

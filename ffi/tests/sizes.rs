@@ -84,8 +84,31 @@ fn the_macros_never_give_less_than_the_queries() {
 }
 
 #[test]
+fn the_macros_of_blocks_never_give_less_than_the_queries() {
+    let queries: [(_, extern "C" fn(u32) -> usize); 3] = [
+        ("VOLUME", hangpose_volume_bytes),
+        ("COMPLETE", hangpose_complete_bytes),
+        ("SURFACE", hangpose_surface_bytes),
+    ];
+    for (name, query) in queries {
+        let [at_least, block] =
+            ["AT_LEAST", "EACH_BLOCK"].map(|term| constant(&format!("HANGPOSE_{name}_BYTES_{term}")));
+        for blocks in [1, 2, 3, 100, 127, 128, 129, 1000, 12_345, 65_536, 65_537, 2_000_000, 8_388_607] {
+            let (given, needed) = (at_least + block * blocks as usize, query(blocks));
+            assert!(
+                (needed..needed + 4096 + needed / 20).contains(&given),
+                "{name}, {blocks} blocks: {given} for {needed}"
+            );
+        }
+    }
+}
+
+#[test]
 fn limits_beyond_all_memory_do_not_wrap() {
     let most = u32::MAX;
+    for query in [hangpose_volume_bytes, hangpose_complete_bytes, hangpose_surface_bytes] {
+        assert!(query(most) > most as usize);
+    }
     let limits = hangpose_limits {
         vertices: most,
         triangles: most,

@@ -59,7 +59,7 @@ impl TooLarge {
 impl MeshFile {
     /// The mesh as the core takes it.
     pub fn mesh(&self) -> Result<Mesh<'_>, MeshError> {
-        Mesh::new(&self.vertices, &self.triangles)
+        Mesh::new(&self.vertices, &self.triangles)?.seen_from(&self.viewpoints)
     }
 }
 

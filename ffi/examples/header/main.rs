@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// The source files in the order of the header.
-const SOURCES: [&str; 13] = [
+const SOURCES: [&str; 17] = [
     "version",
     "status",
     "detail",
@@ -21,6 +21,10 @@ const SOURCES: [&str; 13] = [
     "pose",
     "predict",
     "sample",
+    "depth_image",
+    "volume_settings",
+    "volume",
+    "depth_points",
 ];
 
 fn main() -> ExitCode {

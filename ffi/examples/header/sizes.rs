@@ -1,7 +1,8 @@
 //! The constants of the macros `HANGPOSE_*_BYTES`, computed from the size queries.
 
 use hangpose_ffi::{
-    hangpose_limits, hangpose_object_bytes, hangpose_predict_bytes, hangpose_supporter_bytes,
+    hangpose_complete_bytes, hangpose_limits, hangpose_object_bytes, hangpose_predict_bytes,
+    hangpose_supporter_bytes, hangpose_surface_bytes, hangpose_volume_bytes,
 };
 
 type Query = unsafe extern "C" fn(*const hangpose_limits) -> usize;
@@ -25,6 +26,13 @@ const QUERIES: [(&str, Query, &[Field]); 3] = [
         hangpose_predict_bytes,
         &[("POINT", |limits| &mut limits.points), ("POSE", |limits| &mut limits.poses)],
     ),
+];
+
+/// Queries that depend on a number of blocks alone.
+const BLOCK_QUERIES: [(&str, extern "C" fn(u32) -> usize); 3] = [
+    ("VOLUME", hangpose_volume_bytes),
+    ("COMPLETE", hangpose_complete_bytes),
+    ("SURFACE", hangpose_surface_bytes),
 ];
 
 /// The constants as `#define` lines of the header.
@@ -56,6 +64,14 @@ pub(super) fn defines() -> String {
             let slope = (with(2 * MANY) - with(MANY)).div_ceil(MANY as usize);
             text += &format!("#define HANGPOSE_{name}_BYTES_EACH_{each} {slope}\n");
         }
+    }
+    for (name, query) in BLOCK_QUERIES {
+        // The hash table of a volume doubles at this number.
+        const MANY: u32 = (1 << 20) + 1;
+        let at_least = query(0).next_multiple_of(1024) + 1024;
+        let slope = (query(MANY) - at_least).div_ceil(MANY as usize);
+        text += &format!("#define HANGPOSE_{name}_BYTES_AT_LEAST {at_least}\n");
+        text += &format!("#define HANGPOSE_{name}_BYTES_EACH_BLOCK {slope}\n");
     }
     text
 }

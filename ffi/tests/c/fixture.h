@@ -51,15 +51,19 @@ static void release(unsigned char *memory, size_t size, size_t offset) {
 
 static hangpose_status make_object(void *memory, size_t size, const hangpose_mesh *m,
                                    const hangpose_params *p, hangpose_monitor *watch) {
-  hangpose_object *made = NULL;
+  hangpose_object *made = (void *)&detail;  // the call sets it to null if it makes nothing
   hangpose_status status = hangpose_object_create(memory, size, m, p, watch, &made, &detail);
-  CHECK((made != NULL) == (status == HANGPOSE_OK || status == HANGPOSE_WORK_LIMIT));
+  CHECK(status == HANGPOSE_ERROR_OVERLAP ||
+        (made != NULL) == (status == HANGPOSE_OK || status == HANGPOSE_WORK_LIMIT));
   return status;
 }
 static hangpose_status make_supporter(void *memory, size_t size, const hangpose_cloud *c,
                                       const hangpose_params *p) {
-  hangpose_supporter *made;
-  return hangpose_supporter_create(memory, size, c, p, NULL, &made, &detail);
+  hangpose_supporter *made = (void *)&detail;
+  hangpose_status status = hangpose_supporter_create(memory, size, c, p, NULL, &made, &detail);
+  CHECK(status == HANGPOSE_ERROR_OVERLAP ||
+        (made != NULL) == (status == HANGPOSE_OK || status == HANGPOSE_WORK_LIMIT));
+  return status;
 }
 static hangpose_status predict(const hangpose_object *o, const hangpose_supporter *s,
                                const hangpose_params *p) {

@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <time.h>
 
+#include "depth.h"
 #include "fixture.h"
 
 static void sizes_and_alignment(void) {
@@ -117,6 +118,9 @@ static void null_and_misaligned(void) {
     REFUSED(hangpose_object_create(work, 0, bad[i], bad[i], NULL, bad[i], NULL));
     hangpose_detail small = {.struct_size = 4};
     REFUSED(hangpose_object_get_info(object, &object_info, &small));
+    o = object;
+    REFUSED(hangpose_object_create(object_memory, object_size, &mesh, &params, NULL, &o, &small));
+    CHECK(o == NULL);
     memory = guarded(hangpose_sample_bytes(10), 0);
     REFUSED(
         hangpose_mesh_sample(bad[i], 0, memory, hangpose_sample_bytes(10), *points, *normals, 10, &detail));
@@ -442,6 +446,7 @@ int main(void) {
   other_params();
   updates();
   threads();
+  depth_images();
   CHECK(hangpose_status_string(INT32_MIN) != NULL && hangpose_stage_string(UINT32_MAX) != NULL);
   CHECK(hangpose_check_abi(0) == HANGPOSE_ERROR_ABI_VERSION &&
         hangpose_check_abi(hangpose_abi_version()) == HANGPOSE_OK);

@@ -99,6 +99,55 @@ int main() {
   CHECK(hangpose::sample({vertices, triangles}, drawn, drawn_normals));
   drawn.resize(499);
   CHECK(!hangpose::sample({vertices, triangles}, drawn, drawn_normals));
+  // Depth images of a square plate, 40 mm wide, half a metre before the camera.
+  std::vector<std::uint16_t> depths(32 * 24, 0);
+  for (std::size_t v = 8; v < 16; ++v)
+    for (std::size_t u = 12; u < 20; ++u) depths[32 * v + u] = 500;
+  const hangpose::camera camera = {32, 24, {100.0f, 100.0f}, {15.5f, 11.5f}, {}};
+  const hangpose::depth_image plate(camera, depths, 0.001f);
+  const hangpose::depth_image images[] = {
+      plate, hangpose::depth_image(plate).seen_from({0.0f, 0.0f, 1.0f}, {1.0f, 0.0f, 0.0f, 0.0f})};
+  hangpose::volume_settings settings(0.005f);
+  CHECK(settings.truncation == 0.02f && settings.blocks() == 0);
+  const auto crop = hangpose::room(images, settings);
+  CHECK(crop && (*crop)[0][2] < 0.48f && (*crop)[1][2] > 0.52f && (*crop)[1][0] < 0.1f);
+  CHECK(!hangpose::room({}, settings));
+  settings.crop_to(*crop).dense = 1;
+  settings.missing_is_free = 1;
+  auto volume = hangpose::volume::create(settings, settings.blocks());
+  CHECK(volume && volume->integrate(images[0]).value() == 64);
+  const auto open = volume->find_surface();
+  CHECK(open && !open->triangles().empty() && open->seen().size() == open->vertices().size());
+  CHECK(volume->complete());
+  const auto closed = volume->find_surface();
+  CHECK(closed && closed->triangles().size() > open->triangles().size());
+  auto solid = hangpose::object::create({closed->vertices(), closed->triangles()}, params);
+  CHECK(solid && solid->info()->is_closed == 1);
+  CHECK(hangpose::volume(*std::move(volume)).integrate(images[1]));
+  CHECK(volume->get() == nullptr && volume->integrate(images[0]).error().status() == HANGPOSE_ERROR_NULL);
+  auto no_room = hangpose::volume::create(settings, 1);
+  CHECK(!no_room && no_room.error().status() == HANGPOSE_ERROR_CAPACITY);
+  auto tiny = hangpose::volume::create(settings, settings.blocks(), hangpose::memory(room.data(), 100));
+  CHECK(!tiny && tiny.error().status() == HANGPOSE_ERROR_MEMORY);
+  settings.dense = 0;
+  auto sparse = hangpose::volume::create(settings, 100);
+  CHECK(sparse && sparse->find_surface()->vertices().empty());
+  CHECK(!sparse->complete() && sparse->complete().error().status() == HANGPOSE_ERROR_SPARSE);
+  const std::vector<unsigned char> labels(depths.size() - 1);
+  auto shown = sparse->integrate(hangpose::depth_image(plate).masked(labels, 0));
+  CHECK(!shown && std::strcmp(shown.error().field(), "image.label_count") == 0);
+  auto short_image =
+      sparse->integrate({camera, hangpose::view<const std::uint16_t>(depths.data(), 700), 0.001f});
+  CHECK(!short_image && std::strcmp(short_image.error().field(), "image.depth_count") == 0);
+  monitor.cancel();
+  CHECK(sparse->integrate(plate, &monitor).error().status() == HANGPOSE_CANCELLED);
+  auto visible = hangpose::depth_points::create(images);
+  CHECK(visible && visible->points().size() == visible->normals().size() && !visible->points().empty());
+  CHECK(visible->viewpoints().size() == 2 && visible->viewpoints()[1][2] == 1.0f);
+  hangpose::points_settings nowhere_near;
+  nowhere_near.max_depth = 0.1f;
+  auto unseen = hangpose::depth_points::create(images, nowhere_near);
+  CHECK(!unseen && unseen.error().status() == HANGPOSE_ERROR_BLANK);
   std::printf("wrapper: %d failures\n", failures);
   return failures;
 }

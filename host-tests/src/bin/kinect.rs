@@ -89,7 +89,7 @@ fn fuse(frames: &[ScanFrame], arguments: &Arguments) -> Result<()> {
         100.0 * mesh.agreement.unwrap_or_default(),
     );
     if let Some(path) = &arguments.mesh {
-        std::fs::write(path, ply_bytes(&mesh.vertices, &mesh.triangles))
+        std::fs::write(path, ply_bytes(&mesh.vertices, &mesh.triangles, &mesh.viewpoints))
             .with_context(|| path.display().to_string())?;
     }
     Ok(())

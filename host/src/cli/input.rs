@@ -29,6 +29,7 @@ pub(super) fn object(path: &Path, mut mesh: MeshFile, placement: &Placement) -> 
     let at = || path.display().to_string();
     TooLarge::check_mesh(&mesh).with_context(at)?;
     placement.apply(&mut mesh.vertices);
+    placement.apply(&mut mesh.viewpoints);
     let aabb = mesh.mesh().with_context(at)?.aabb();
     let scale_warning = placement.warn_of_size(&aabb, "object");
     tell(path, &mesh.notes, &scale_warning);

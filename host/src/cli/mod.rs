@@ -80,6 +80,11 @@ struct FileArguments {
     /// Centre of mass of the object, in metres in the object frame (after scale and up axis).
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
     com: Option<[f64; 3]>,
+    /// Position of a camera from whose images the object's mesh was made, in metres in the object frame (after scale and up
+    /// axis). Repeat it for several cameras. What none of them saw makes poses less probable. The default is what the file
+    /// or the images say.
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
+    object_viewpoint: Vec<[f64; 3]>,
     /// Factor from the units of the object's file to metres (0.001 for millimetres).
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_scale, conflicts_with = "object_images")]
     object_scale: f32,

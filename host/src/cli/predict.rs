@@ -164,7 +164,12 @@ impl<'a> Source<'a> {
             }
             Self::Images(images) => (images.object()?, Placement { scale: 1.0, up, scale_option: None }),
         };
-        Ok(input::object(self.name(), file, &placement)?.shape)
+        let mut mesh = input::object(self.name(), file, &placement)?.shape;
+        if !arguments.object_viewpoint.is_empty() {
+            mesh.viewpoints = arguments.object_viewpoint.iter().map(|view| view.map(|x| x as f32)).collect();
+            mesh.mesh().context("--object-viewpoint")?;
+        }
+        Ok(mesh)
     }
 
     /// The supporter in metres with z up.

@@ -12,7 +12,8 @@ use hangpose::perception::completion::CompletionSettings;
 use hangpose::perception::depth_points::DepthPointsSettings;
 use hangpose::perception::volume::VolumeSettings;
 use hangpose::{
-    CLOUD_VOXEL, FAIR_AGREEMENT, FuseError, Monitor, TooLarge, complete_scan, scan_cloud, suggested_voxel,
+    CLOUD_VOXEL, FAIR_AGREEMENT, FuseError, Monitor, ScannedMesh, TooLarge, complete_scan, scan_cloud,
+    suggested_voxel,
 };
 use std::path::{Path, PathBuf};
 
@@ -254,7 +255,8 @@ impl Recording<'_> {
             (100.0 * shown).floor()
         );
         let notes = if shown < 1.0 { vec![note] } else { Vec::new() };
-        let file = MeshFile { vertices: mesh.vertices, triangles: mesh.triangles, notes };
+        let ScannedMesh { vertices, triangles, viewpoints, .. } = mesh;
+        let file = MeshFile { vertices, triangles, viewpoints, notes };
         let remedy = "pass a larger --voxel or a crop box";
         TooLarge::check_mesh(&file).map_err(|error| TooLarge { remedy, ..error }).with_context(named)?;
         Ok(file)

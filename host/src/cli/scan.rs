@@ -91,7 +91,7 @@ fn mesh(recording: &Recording, frames: &[ScanFrame], voxel: f32, is_completed: b
         mesh.triangles.len(),
         mesh.volume_bytes as f64 / f64::from(1 << 20),
     );
-    let ply = ply_bytes(&mesh.vertices, &mesh.triangles);
+    let ply = ply_bytes(&mesh.vertices, &mesh.triangles, &mesh.viewpoints);
     Ok(Scanned { ply, viewpoints: mesh.viewpoints, summary })
 }
 
@@ -104,6 +104,6 @@ fn cloud(recording: &Recording, frames: &[ScanFrame], voxel: f32) -> Result<Scan
         "{points} pixels merged, {flying} between surfaces and {grazing} at grazing angles left out; cloud of {} points",
         cloud.points.len()
     );
-    let ply = cloud_ply_bytes(&cloud.points, cloud.normals.as_deref().unwrap_or_default());
+    let ply = cloud_ply_bytes(&cloud.points, cloud.normals.as_deref().unwrap_or_default(), &cloud.viewpoints);
     Ok(Scanned { ply, viewpoints: cloud.viewpoints, summary })
 }

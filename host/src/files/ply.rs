@@ -21,6 +21,8 @@ pub(super) struct Ply {
     /// One normal per vertex, if the file has normals.
     pub(super) normals: Option<Vec<[f32; 3]>>,
     pub(super) faces: Vec<Face>,
+    /// Positions of cameras, see [`viewpoint_comments`].
+    pub(super) viewpoints: Vec<[f64; 3]>,
 }
 
 /// A polygon.
@@ -96,7 +98,8 @@ pub(super) fn read(source: &Source<'_>) -> Result<Ply, FileError> {
     let body = reader.get_ref().position() as usize;
     check_lengths(source, &header, body)?;
 
-    let mut ply = Ply::default();
+    let viewpoints = header.comments.iter().filter_map(|comment| viewpoint(comment)).collect();
+    let mut ply = Ply { viewpoints, ..Ply::default() };
     let mut text = Text::new(source, body);
     for element in header.elements.values() {
         let rows = match header.encoding {
@@ -130,6 +133,22 @@ pub(super) fn read(source: &Source<'_>) -> Result<Ply, FileError> {
         }
     }
     Ok(ply)
+}
+
+/// Lines of a header that keep the positions of cameras, for which PLY has no element: `comment viewpoint x y z`.
+pub(super) fn viewpoint_comments(viewpoints: &[[f32; 3]]) -> String {
+    viewpoints.iter().map(|[x, y, z]| format!("comment viewpoint {x} {y} {z}\n")).collect()
+}
+
+/// The position of a camera that a comment keeps.
+fn viewpoint(comment: &str) -> Option<[f64; 3]> {
+    let numbers: Vec<f64> = comment
+        .trim()
+        .strip_prefix("viewpoint ")?
+        .split_whitespace()
+        .map_while(|word| word.parse().ok())
+        .collect();
+    numbers.try_into().ok()
 }
 
 impl Ply {

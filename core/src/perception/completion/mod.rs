@@ -88,10 +88,8 @@ impl Volume<'_> {
         if !self.settings().dense {
             return Err(CompletionError::Sparse);
         }
+        settings.validate()?;
         let CompletionSettings { thickness, radius } = *settings;
-        if !(thickness >= 0.0 && radius >= 0.0) {
-            return Err(CompletionError::Settings { thickness, radius });
-        }
         let voxel = self.settings().voxel;
         let one_sided = thickness / 2.0 / voxel;
         let bounds = Bounds { one_sided, radius: one_sided.max(radius / voxel) };

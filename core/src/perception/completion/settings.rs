@@ -1,5 +1,7 @@
 //! How far a completion may go.
 
+use super::CompletionError;
+
 /// How far a guess may go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompletionSettings {
@@ -9,6 +11,18 @@ pub struct CompletionSettings {
     pub thickness: f32,
     /// Greatest radius of a ball that surfaces hold from two sides, metres. A bar of a greater radius stays open.
     pub radius: f32,
+}
+
+impl CompletionSettings {
+    /// Checks all values.
+    pub fn validate(&self) -> Result<(), CompletionError> {
+        let Self { thickness, radius } = *self;
+        if thickness >= 0.0 && radius >= 0.0 {
+            Ok(())
+        } else {
+            Err(CompletionError::Settings { thickness, radius })
+        }
+    }
 }
 
 impl Default for CompletionSettings {

@@ -59,7 +59,7 @@ impl core::fmt::Display for CameraError {
             }
             Self::PrincipalPoint { centre: [x, y], size: [width, height] } => write!(
                 f,
-                "the principal point cx = {x}, cy = {y} is outside an image of {width} x {height}: the intrinsics may belong to another resolution (scale fx, fy, cx and cy like the image)"
+                "the principal point cx = {x:?}, cy = {y:?} is outside an image of {width} x {height}: the intrinsics may belong to another resolution (scale fx, fy, cx and cy like the image)"
             ),
             Self::Distortion { distortion } => {
                 write!(

@@ -84,11 +84,15 @@ impl core::fmt::Display for VolumeSettingsError {
             ),
             Self::EmptyCrop { crop: Aabb { min, max } } => write!(
                 f,
-                "the crop box from {min} to {max} holds no voxel: give the corner with the least coordinates first, and metres"
+                "the crop box from {:?} to {:?} holds no voxel: give the corner with the least coordinates first, and metres",
+                <[f32; 3]>::from(*min),
+                <[f32; 3]>::from(*max)
             ),
             Self::FarCrop { crop: Aabb { min, max }, limit } => write!(
                 f,
-                "the crop box from {min} to {max} must lie within ±{limit} m with these voxels: move the origin of the world nearer, or take larger voxels"
+                "the crop box from {:?} to {:?} must lie within ±{limit} m with these voxels: move the origin of the world nearer, or take larger voxels",
+                <[f32; 3]>::from(*min),
+                <[f32; 3]>::from(*max)
             ),
             Self::DenseWithoutCrop => {
                 write!(f, "a dense volume needs a crop box: give one, or a sparse volume")

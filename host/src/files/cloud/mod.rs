@@ -43,7 +43,12 @@ pub(super) fn read(source: &Source<'_>) -> Result<CloudFile, FileError> {
             if !ply.faces.is_empty() {
                 return Err(mesh_not_cloud());
             }
-            RawCloud { points: ply.vertices, normals: ply.normals, ..RawCloud::default() }
+            RawCloud {
+                points: ply.vertices,
+                normals: ply.normals,
+                viewpoints: ply.viewpoints,
+                ..RawCloud::default()
+            }
         }
         Format::Stl | Format::Gltf => return Err(mesh_not_cloud()),
     }

@@ -24,6 +24,8 @@ pub struct MeshFile {
     /// Vertex indices of each triangle, in the winding order of the file, which by convention is counter-clockwise seen
     /// from outside. Every index is in range and no triangle repeats one. A triangle may have no area.
     pub triangles: Vec<[u32; 3]>,
+    /// Positions of the cameras that the mesh was made from, in the frame and unit of the file, if it says so.
+    pub viewpoints: Vec<[f32; 3]>,
     /// What the reader changed or ignored, as sentences for the user.
     pub notes: Vec<String>,
 }
@@ -49,6 +51,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<MeshFile, FileError> {
 fn of_ply(ply: Ply) -> RawMesh {
     let mut mesh = RawMesh::default();
     mesh.vertices = ply.vertices.into_iter().map(|vertex| vertex.map(|x| x as f32)).collect();
+    mesh.viewpoints = ply.viewpoints.into_iter().map(|position| position.map(|x| x as f32)).collect();
     for face in ply.faces {
         mesh.face(face.corners, face.line);
     }

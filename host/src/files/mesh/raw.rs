@@ -16,6 +16,7 @@ pub(crate) struct RawMesh {
     faces: Vec<RawFace>,
     /// First index that does not fit in a u32.
     impossible: Option<(Place, i64)>,
+    pub(crate) viewpoints: Vec<[f32; 3]>,
     pub(crate) notes: Vec<String>,
 }
 
@@ -104,7 +105,7 @@ impl RawMesh {
             notes.push(format!("{thin} of {} triangles have no area.", triangles.len()));
         }
         let (vertices, triangles) = without_strays(vertices, triangles);
-        Ok(MeshFile { vertices, triangles, notes })
+        Ok(MeshFile { vertices, triangles, viewpoints: self.viewpoints, notes })
     }
 
     /// Flags of the vertices that faces use. An index out of range is an error.
