@@ -857,7 +857,7 @@ fn what_is_in_the_shadow_of_all_cameras_is_not_seen() {
     );
     let (beside, above) = (Point::new(0.5, 0.0, 0.0), Point::new(0.0, 0.0, 0.5));
     scene.try_out(|lab| {
-        let mut shadow = |viewpoints: &[Point], unseen: f32| {
+        let shadow = |viewpoints: &[Point], unseen: f32| {
             let body = Body { views: Views { viewpoints, unseen }, ..lab.body };
             let monitor = Monitor::new();
             super::unseen((&body, &lab.support), &Pose::identity(), &mut Meter::new(&monitor)).unwrap()

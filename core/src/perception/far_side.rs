@@ -267,6 +267,12 @@ mod tests {
     fn what_was_seen_from_all_sides_gets_nothing() {
         let (points, normals) = bar(0.006, true);
         assert!(far_side(&points, &normals).is_empty());
+        // Also where points are as far apart as the bar is thick.
+        for step in [40, 60, 80] {
+            let (points, normals): (Vec<Point>, Vec<Vector>) =
+                points.iter().zip(&normals).step_by(step).map(|(p, n)| (*p, *n)).unzip();
+            assert!(far_side(&points, &normals).is_empty(), "every {step}th point");
+        }
     }
 
     #[test]

@@ -5,13 +5,16 @@ use crate::geometry::{Point, PointTree, Vector, unit_or};
 /// Range in which points hide others, metres: thicker than what things hang on. What is farther away hides as well, but
 /// such points say little about whether a bar was seen from both sides.
 const RANGE: f32 = 0.025;
-/// Cosine of the angle to the viewpoint within which a point hides another.
-const HIDING: f32 = 0.95;
+/// Tangent of the angle to the viewpoint within which a point hides another: 18 degrees.
+const HIDING: f32 = 0.33;
+/// Distance from the way to the viewpoint within which a point hides another, in distances between points. In a sparse cloud
+/// hardly a point is within the angle.
+const BESIDE: f32 = 0.75;
 /// Sine of the least angle between a surface and the way to a point that hides it: others are the surface's own points,
 /// lifted by noise.
 const OFF_SURFACE: f32 = 0.5;
 /// Least distance of a point that hides another, in distances between points. Nearer ones are noise of the surface.
-const CLEAR: f32 = 1.5;
+const CLEAR: f32 = 1.2;
 /// Points that are looked at to judge a cloud.
 const PROBES: usize = 512;
 /// Share of hidden points from which the viewpoints do not explain a cloud: it was seen from elsewhere as well. In clouds
@@ -51,13 +54,16 @@ pub(crate) fn explain(tree: &PointTree, normals: &[Vector], spacings: &[f32], vi
 /// Whether other points are between a point and a viewpoint in the direction `way`.
 fn is_hidden(tree: &PointTree, point: &Point, normal: &Vector, spacing: f32, way: &Vector) -> bool {
     let least = CLEAR * spacing;
+    let is_on_way = |offset: &Vector| {
+        let along = offset.dot(way);
+        along > 0.0 && (offset - way * along).norm() < (HIDING * along).max(BESIDE * spacing)
+    };
     let mut is_hidden = false;
     tree.for_each_within(point, RANGE, |neighbour| {
         let offset = tree.points()[neighbour.index as usize] - point;
         let distance = libm::sqrtf(neighbour.distance_squared);
-        is_hidden |= distance > least
-            && offset.dot(way) > HIDING * distance
-            && offset.dot(normal).abs() > OFF_SURFACE * distance;
+        is_hidden |=
+            distance > least && is_on_way(&offset) && offset.dot(normal).abs() > OFF_SURFACE * distance;
     });
     is_hidden
 }

@@ -1,17 +1,22 @@
 //! Points that say the same as others: duplicates, and more points than the mechanics can tell apart.
 
 use super::planes;
+use super::surroundings::Surroundings;
 use crate::geometry::{Point, Vector, unit_or};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
 
 /// Edge of the cubes within which the points of a dense cloud are merged, metres: less than half of the distance between
 /// the patches that the mechanics fits, and about the noise of a good depth camera.
 const CUBE: f32 = 0.001;
 /// Edge of the cubes within which the points on a large plane are merged, metres. Nothing hangs there, and a plane needs few
 /// points to stop an object: less than the mechanics bridges.
-const PLANE_CUBE: f32 = 0.01;
-/// Keeps the cubes of planes apart from others.
+const PLANE_CUBE: f32 = 0.02;
+/// Edge of the cubes within which the points of a large plane are merged far from all that is not on a plane, metres: coarse, but
+/// patches follow the spacing, so that the plane still has no gaps.
+const FAR_CUBE: f32 = 0.05;
+/// Keep the cubes of planes apart from others.
 const PLANE_TAG: u32 = 1 << 31;
+const FAR_TAG: u32 = 1 << 30;
 /// Points per occupied cube above which a cloud is dense.
 const DENSE: usize = 2;
 
@@ -41,7 +46,7 @@ pub(super) const fn scratch_bytes(points: usize) -> usize {
         .saturating_add(array_bytes::<u32>(points))
         .saturating_add(array_bytes::<Point>(points))
         .saturating_add(array_bytes::<u8>(points))
-        .saturating_add(planes::scratch_bytes())
+        .saturating_add(larger(planes::scratch_bytes(), Surroundings::BYTES))
 }
 
 /// Entries of the hash table, of which at most half are in use.
@@ -62,11 +67,16 @@ pub(super) fn merge<'s>(
     let members = scratch.slice::<u32>(points.len())?;
     let firsts = scratch.slice::<Point>(points.len())?;
     let on_plane = scratch.slice::<u8>(points.len())?;
-    planes::mark(points, on_plane, scratch)?;
+    planes::mark(points, on_plane, scratch.scratch())?;
+    let near = Surroundings::of(
+        points.iter().zip(&*on_plane).filter(|(_, on)| **on == 0).map(|(point, _)| point),
+        &mut scratch,
+    )?;
     let cubes = group(normals, |index| cube(&points[index], CUBE), table, names, |_, _| {});
     let is_dense = points.len() > DENSE * cubes;
     let place = |index: usize| match (on_plane[index], is_dense) {
-        (1, _) => cube(&points[index], PLANE_CUBE).map(|x| x ^ PLANE_TAG),
+        (1, _) if near.has(&points[index]) => cube(&points[index], PLANE_CUBE).map(|x| x ^ PLANE_TAG),
+        (1, _) => cube(&points[index], FAR_CUBE).map(|x| x ^ FAR_TAG),
         (_, true) => cube(&points[index], CUBE),
         (_, false) => bits(&points[index]),
     };
@@ -181,7 +191,7 @@ fn bits(point: &Point) -> [u32; 3] {
     [point.x, point.y, point.z].map(|x| (x + 0.0).to_bits())
 }
 
-fn hash([x, y, z]: [u32; 3]) -> u32 {
+pub(super) fn hash([x, y, z]: [u32; 3]) -> u32 {
     let mixed = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ z.wrapping_mul(0xC2B2_AE3D);
     (mixed ^ mixed >> 15).wrapping_mul(0x2C1B_3C6D) ^ mixed >> 13
 }

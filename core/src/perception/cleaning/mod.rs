@@ -5,6 +5,7 @@ mod merge;
 mod planes;
 pub(crate) mod spacing;
 mod strays;
+mod surroundings;
 
 use crate::geometry::{Point, PointTreeSlots, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
@@ -65,7 +66,7 @@ pub(crate) fn clean<'s>(
         kept
     } else {
         let mut scratch = arena.scratch();
-        let is_stray = strays::find(&slots.tree(), spacings, &mut scratch)?;
+        let is_stray = strays::find(&slots.tree(), spacings, kept.is_on_plane, &mut scratch)?;
         counts.strays = is_stray.iter().filter(|flag| **flag > 0).count();
         if counts.strays > 0 {
             let kept = kept.without(is_stray);

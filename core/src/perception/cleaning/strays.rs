@@ -34,11 +34,12 @@ pub(super) const fn scratch_bytes(points: usize) -> usize {
     array_bytes::<u8>(points).saturating_add(array_bytes::<u32>(points).saturating_mul(2))
 }
 
-/// Flags the strays, in the order of the points that the tree was built from. `spacings` are in tree order. At least one
-/// point is not flagged.
+/// Flags the strays, in the order of the points that the tree was built from, as `is_on_plane` is: points on large planes are
+/// none. `spacings` are in tree order. At least one point is not flagged.
 pub(super) fn find<'s>(
     tree: &PointTree,
     spacings: &[f32],
+    is_on_plane: &[u8],
     arena: &mut Arena<'s>,
 ) -> Result<&'s [u8], OutOfMemory> {
     let count = tree.points().len();
@@ -48,6 +49,9 @@ pub(super) fn find<'s>(
     let overall = median(spacings, sizes);
     let mut pieces = DisjointSets::new(parents);
     for (index, point) in tree.points().iter().enumerate() {
+        if is_on_plane[tree.order()[index] as usize] > 0 {
+            continue;
+        }
         let mut found = [Neighbour::default(); NEIGHBOURS];
         let neighbours = tree.k_nearest(point, &mut found);
         let is_apart = is_apart(tree, spacings, index, overall, neighbours);
@@ -61,6 +65,7 @@ pub(super) fn find<'s>(
         }
     }
     flag_specks(tree, &mut pieces, sizes, is_stray);
+    is_stray.iter_mut().zip(is_on_plane).for_each(|(flag, on_plane)| *flag &= 1 - on_plane);
     if is_stray.iter().all(|flag| *flag > 0) {
         is_stray.fill(0);
     }
