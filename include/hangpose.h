@@ -601,6 +601,9 @@ typedef struct hangpose_prediction {
   uint32_t settling_at_rest;
   // Number of releases after which the object came to rest but is wedged: it would not come off again.
   uint32_t settling_wedged;
+  // Number of releases that came to rest in a pose that would be probable enough if what no camera has seen were known to be
+  // as it is guessed.
+  uint32_t settling_unseen;
   // Number of different rest poses with at least hangpose_params.min_probability.
   uint32_t settling_probable;
   // Number of firm releases, see hangpose_params.firm_enough.
@@ -804,6 +807,9 @@ typedef struct hangpose_points_settings {
 // The object comes to rest, but a small disturbance would bring it down, it is wedged and would not come off again, or
 // there is no room to release it there.
 #define HANGPOSE_STAGE_TOO_LOOSE 10
+
+// The object comes to rest firmly enough, but too much of what would carry it or be in its way was not seen by any camera.
+#define HANGPOSE_STAGE_UNSEEN 11
 
 // The library's own method.
 #define HANGPOSE_PROFILE_DEFAULT 0

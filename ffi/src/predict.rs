@@ -53,6 +53,9 @@ pub struct hangpose_prediction {
     pub settling_at_rest: u32,
     /// Number of releases after which the object came to rest but is wedged: it would not come off again.
     pub settling_wedged: u32,
+    /// Number of releases that came to rest in a pose that would be probable enough if what no camera has seen were known to be
+    /// as it is guessed.
+    pub settling_unseen: u32,
     /// Number of different rest poses with at least hangpose_params.min_probability.
     pub settling_probable: u32,
     /// Number of firm releases, see hangpose_params.firm_enough.
@@ -184,8 +187,17 @@ impl From<&Prediction<'_>> for hangpose_prediction {
         };
         let MatchingCounts { pairs, fitting, clear: matching_clear } = matching;
         let CandidateCounts { made, clear } = candidates;
-        let SettlingCounts { released, rotated_off, slid_off, moving, at_rest, wedged, probable, firm } =
-            found.counts.settling;
+        let SettlingCounts {
+            released,
+            rotated_off,
+            slid_off,
+            moving,
+            at_rest,
+            wedged,
+            unseen,
+            probable,
+            firm,
+        } = found.counts.settling;
         Self {
             struct_size: size_of::<Self>() as u32,
             pose_count: found.poses.len() as u32,
@@ -202,6 +214,7 @@ impl From<&Prediction<'_>> for hangpose_prediction {
             settling_moving: moving as u32,
             settling_at_rest: at_rest as u32,
             settling_wedged: wedged as u32,
+            settling_unseen: unseen as u32,
             settling_probable: probable as u32,
             settling_firm: firm as u32,
             rays: found.work.rays,

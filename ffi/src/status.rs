@@ -80,6 +80,8 @@ pub const HANGPOSE_STAGE_NEVER_RESTS: hangpose_stage = 9;
 /// The object comes to rest, but a small disturbance would bring it down, it is wedged and would not come off again, or
 /// there is no room to release it there.
 pub const HANGPOSE_STAGE_TOO_LOOSE: hangpose_stage = 10;
+/// The object comes to rest firmly enough, but too much of what would carry it or be in its way was not seen by any camera.
+pub const HANGPOSE_STAGE_UNSEEN: hangpose_stage = 11;
 
 pub(crate) fn stage(stage: Stage) -> hangpose_stage {
     match stage {
@@ -93,6 +95,7 @@ pub(crate) fn stage(stage: Stage) -> hangpose_stage {
         Stage::SlidesOff => HANGPOSE_STAGE_SLIDES_OFF,
         Stage::NeverRests => HANGPOSE_STAGE_NEVER_RESTS,
         Stage::TooLoose => HANGPOSE_STAGE_TOO_LOOSE,
+        Stage::Unseen => HANGPOSE_STAGE_UNSEEN,
     }
 }
 
@@ -168,6 +171,9 @@ pub(crate) fn stage_text(stage: hangpose_stage) -> &'static CStr {
         HANGPOSE_STAGE_TOO_LOOSE => {
             c"no released pose stays: most often the object is wedged where it rests, or a small disturbance brings it down"
         }
+        HANGPOSE_STAGE_UNSEEN => {
+            c"poses stay only if what no camera has seen is as it is guessed, which is not likely enough: another view of the object or of the supporter would help"
+        }
         _ => c"unknown stage",
     }
 }
@@ -191,6 +197,7 @@ mod tests {
             Stage::SlidesOff,
             Stage::NeverRests,
             Stage::TooLoose,
+            Stage::Unseen,
         ] {
             assert_eq!(stage_text(stage(core)).to_str().unwrap(), core.to_string());
         }

@@ -20,6 +20,7 @@ fn every_count_of_a_prediction_reaches_its_field() {
         moving: 26,
         at_rest: 27,
         wedged: 28,
+        unseen: 31,
         probable: 29,
         firm: 30,
     };
@@ -39,7 +40,7 @@ fn every_count_of_a_prediction_reaches_its_field() {
     assert_eq!([c.matching_pairs, c.matching_fitting, c.matching_clear], [0; 3]);
     assert_eq!([c.settling_candidates, c.settling_clear, c.settling_released], [21, 22, 23]);
     assert_eq!([c.settling_rotated_off, c.settling_slid_off, c.settling_moving], [24, 25, 26]);
-    assert_eq!([c.settling_at_rest, c.settling_wedged], [27, 28]);
+    assert_eq!([c.settling_at_rest, c.settling_wedged, c.settling_unseen], [27, 28, 31]);
     assert_eq!([c.settling_probable, c.settling_firm], [29, 30]);
     assert_eq!([c.rays, c.distance_queries], [1 << 40, 1 << 41]);
 

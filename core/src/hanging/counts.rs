@@ -19,6 +19,8 @@ impl Counts {
         let empty = self.search.empty_stage();
         if empty.is_some() || !settle || self.settling.probable > 0 {
             empty
+        } else if self.settling.unseen > 0 {
+            Some(Stage::Unseen)
         } else {
             Some(self.settling.failure())
         }

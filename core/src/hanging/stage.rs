@@ -24,6 +24,9 @@ pub enum Stage {
     NeverRests,
     /// Released poses come to rest, but too loosely to be given, or wedged, or with no room for a release pose near by.
     TooLoose,
+    /// Released poses come to rest firmly enough, but too much of what would carry or be in the way was not seen by any camera
+    /// ([`Unseen`](crate::mechanics::Unseen)).
+    Unseen,
 }
 
 impl core::fmt::Display for Stage {
@@ -45,6 +48,7 @@ impl core::fmt::Display for Stage {
             Self::SlidesOff => "no released pose stays: most often the object slides off or falls through",
             Self::NeverRests => "no released pose stays: most often the object is still moving when the time is up",
             Self::TooLoose => "no released pose stays: most often the object is wedged where it rests, or a small disturbance brings it down",
+            Self::Unseen => "poses stay only if what no camera has seen is as it is guessed, which is not likely enough: another view of the object or of the supporter would help",
         })
     }
 }

@@ -497,6 +497,30 @@ fn the_product_rejects_for_the_right_reason() {
 }
 
 #[test]
+fn a_peg_in_the_shadow_of_the_ring_is_unseen() {
+    // The torus has its axis along z. Seen along the axis its hole is free; seen from the side, it is in the shadow.
+    let scene = Scene::ring_on_peg(0.4);
+    let params = Params { min_probability: 0.6, ..product() };
+    let stage = |viewpoint: [f32; 3]| {
+        let viewpoints = [viewpoint];
+        let mesh = scene.object.mesh().seen_from(&viewpoints).unwrap();
+        let limits = scene.limits(&params);
+        let (mut object, mut supporter) =
+            (vec![0; Object::bytes(&limits)], vec![0; Supporter::bytes(&limits)]);
+        let object = Object::analyze(&mesh, &params, &mut object, &Monitor::new()).unwrap();
+        let supporter = Supporter::analyze(&scene.cloud(), &params, &mut supporter, &Monitor::new()).unwrap();
+        let mut poses = [HangingPose::default(); 5];
+        let found = predict(&object, &supporter, &params, &mut poses, &Monitor::new()).unwrap();
+        (found.poses.first().and_then(|pose| pose.rest), found.rejection.map(|rejection| rejection.stage))
+    };
+    let (rest, rejection) = stage([0.0, 0.0, 0.5]);
+    assert_eq!(rejection, None);
+    let unseen = rest.unwrap().unseen;
+    assert!(unseen.shadow < 0.05 && (unseen.object - 0.75).abs() < 0.02, "{unseen:?}");
+    assert_eq!(stage([0.5, 0.0, 0.0]), (None, Some(Stage::Unseen)));
+}
+
+#[test]
 fn the_product_gives_the_same_bytes_twice() {
     let scene = Scene::key_on_peg();
     let bits = |params: &Params| std::format!("{:?}", scene.predict(params).0);

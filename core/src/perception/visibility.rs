@@ -14,7 +14,9 @@ const BESIDE: f32 = 0.75;
 /// lifted by noise.
 const OFF_SURFACE: f32 = 0.5;
 /// Least distance of a point that hides another, in distances between points. Nearer ones are noise of the surface.
-const CLEAR: f32 = 1.2;
+const CLEAR: f32 = 1.5;
+/// The same when a cloud is judged: few points hide others in a sparse one, and noise may hide some.
+const CLEAR_ENOUGH: f32 = 1.2;
 /// Points that are looked at to judge a cloud.
 const PROBES: usize = 512;
 /// Share of hidden points from which the viewpoints do not explain a cloud: it was seen from elsewhere as well. In clouds
@@ -34,7 +36,7 @@ pub(crate) fn best_view(
         let way = unit_or(viewpoint - point, Vector::zeros());
         let cosine = way.dot(normal);
         let is_better = best.is_none_or(|(_, before)| cosine.abs() > before.abs());
-        if is_better && !is_hidden(tree, point, normal, spacing, &way) {
+        if is_better && !is_hidden(tree, (point, normal), (spacing, CLEAR), &way) {
             best = Some((way, cosine));
         }
     }
@@ -45,15 +47,25 @@ pub(crate) fn best_view(
 pub(crate) fn explain(tree: &PointTree, normals: &[Vector], spacings: &[f32], viewpoints: &[Point]) -> bool {
     let probes = normals.len().min(PROBES);
     let hidden = (0..probes).map(|k| k * normals.len() / probes).filter(|&index| {
-        let at = (&tree.points()[index], &normals[index]);
-        best_view(tree, at, spacings[index], viewpoints).is_none()
+        let (point, normal) = (&tree.points()[index], &normals[index]);
+        viewpoints.iter().all(|viewpoint| {
+            let way = unit_or(viewpoint - point, Vector::zeros());
+            is_hidden(tree, (point, normal), (spacings[index], CLEAR_ENOUGH), &way)
+        })
     });
     hidden.count() * MAX_HIDDEN < probes
 }
 
 /// Whether other points are between a point and a viewpoint in the direction `way`.
-fn is_hidden(tree: &PointTree, point: &Point, normal: &Vector, spacing: f32, way: &Vector) -> bool {
-    let least = CLEAR * spacing;
+///
+/// `spacing` is the distance between the points around, metres, and nearer ones than `clear` times that do not count.
+fn is_hidden(
+    tree: &PointTree,
+    (point, normal): (&Point, &Vector),
+    (spacing, clear): (f32, f32),
+    way: &Vector,
+) -> bool {
+    let least = clear * spacing;
     let is_on_way = |offset: &Vector| {
         let along = offset.dot(way);
         along > 0.0 && (offset - way * along).norm() < (HIDING * along).max(BESIDE * spacing)

@@ -46,6 +46,7 @@ struct SettlingCounts {
     moving: usize,
     at_rest: usize,
     wedged: usize,
+    unseen: usize,
     probable: usize,
     firm: usize,
 }
@@ -69,6 +70,7 @@ impl From<&hanging::Counts> for Counts {
             moving,
             at_rest,
             wedged,
+            unseen,
             probable,
             firm,
         } = counts.settling;
@@ -81,6 +83,7 @@ impl From<&hanging::Counts> for Counts {
             moving,
             at_rest,
             wedged,
+            unseen,
             probable,
             firm,
         };

@@ -11,8 +11,8 @@ use super::scene::Scene;
 use crate::best::Best;
 use crate::geometry::Pose;
 use crate::mechanics::{
-    Body, Fate, Settings, Settled, Sleep, Support, comes_free, firmness, is_off_surface, release_pose,
-    settle, unseen,
+    Body, Fate, Settings, Settled, Sleep, Support, Unseen, comes_free, firmness, is_off_surface,
+    release_pose, settle, unseen,
 };
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop};
@@ -34,6 +34,9 @@ pub struct SettlingCounts {
     pub at_rest: usize,
     /// Poses at rest that do not come free when gravity is reversed.
     pub wedged: usize,
+    /// Releases that came to rest in a pose that would be probable enough if what no camera has seen were known to be as it is
+    /// guessed.
+    pub unseen: usize,
     /// Distinct rest poses with a probability of at least [`Params::min_probability`].
     pub probable: usize,
     /// Releases that came to rest in a pose with a probability of 97.5 % or more.
@@ -155,7 +158,11 @@ impl<'a> Settling<'a> {
         let least = probability::least_tilt(last, gap, &unseen).max(MIN_USEFUL_TILT);
         let firm = firmness(scene, &settled.pose, &down, params, least, self.sleeps, meter)?;
         let rest = Rest::new(settled.pose, (sinking, gap), unseen, &firm);
-        if rest.probability >= self.params.min_probability && self.known(&rest.pose, poses).is_none() {
+        let least = self.params.min_probability;
+        if rest.probability < least && probability::of(&firm.margin, gap, &Unseen::default()) >= least {
+            self.counts.unseen += 1;
+        }
+        if rest.probability >= least && self.known(&rest.pose, poses).is_none() {
             self.counts.probable += 1;
             self.counts.firm += usize::from(rest.is_firm());
             poses.offer(HangingPose { pose, rest: Some(rest), matched: start.matched }, is_more_probable);
