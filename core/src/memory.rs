@@ -66,7 +66,7 @@ pub(crate) const fn model_bytes(arrays: usize) -> usize {
     arrays.saturating_add(ALIGNMENT - 1)
 }
 
-/// Hands out zeroed slices from the front of one block of memory, for as long as the block is borrowed.
+/// Hands out slices from the front of one block of memory, for as long as the block is borrowed.
 pub(crate) struct Arena<'m> {
     free: &'m mut [u8],
 }
@@ -83,6 +83,14 @@ impl<'m> Arena<'m> {
 
     /// `count` zeroed values that live as long as the memory.
     pub(crate) fn slice<T: Pod>(&mut self, count: usize) -> Result<&'m mut [T], OutOfMemory> {
+        let slice = self.unset(count)?;
+        slice.fill(T::zeroed());
+        Ok(slice)
+    }
+
+    /// `count` values, whatever the memory holds, that live as long as the memory: for large arrays of which each value is
+    /// written before it is read, and most are often not needed.
+    pub(crate) fn unset<T: Pod>(&mut self, count: usize) -> Result<&'m mut [T], OutOfMemory> {
         const { assert!(align_of::<T>() <= ALIGNMENT && size_of::<T>() > 0) };
         let bytes = array_bytes::<T>(count);
         if bytes > self.free.len() {
@@ -90,7 +98,6 @@ impl<'m> Arena<'m> {
         }
         let (taken, rest) = core::mem::take(&mut self.free).split_at_mut(bytes);
         self.free = rest;
-        taken.fill(0);
         Ok(bytemuck::cast_slice_mut(&mut taken[..count * size_of::<T>()]))
     }
 

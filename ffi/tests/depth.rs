@@ -157,6 +157,8 @@ fn a_completed_mesh_has_the_bits_of_the_core() {
         vertex_count: 0,
         triangle_count: 0,
         vertices: std::ptr::null(),
+        viewpoint_count: 0,
+        viewpoints: std::ptr::null(),
         triangles: std::ptr::null(),
     };
     // SAFETY: as above.

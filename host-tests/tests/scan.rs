@@ -187,7 +187,7 @@ fn a_fused_torus_is_within_a_voxel_and_closed() {
 fn one_image_of_a_torus_is_half_of_it_facing_the_camera() {
     let shots = torus_shots(1, &Sensor { flying: 0.0, ..Sensor::default() });
     let image = shots[0].image().unwrap();
-    let Surface { vertices, triangles, seen } = fuse(&[image], None);
+    let Surface { vertices, triangles, seen, .. } = fuse(&[image], None);
     assert!(seen.iter().all(|seen| *seen == 1));
     assert!(vertices.iter().all(|v| from_torus(v).abs() < 0.003));
     let (mut area, mut facing) = (0.0, 0.0);

@@ -521,6 +521,28 @@ fn a_peg_in_the_shadow_of_the_ring_is_unseen() {
 }
 
 #[test]
+fn what_the_memory_held_does_not_matter() {
+    let scene = Scene::key_on_peg();
+    let params = product();
+    let poses_in = |held: u8| {
+        let limits = scene.limits(&params);
+        let (mut object, mut supporter) =
+            (vec![held; Object::bytes(&limits)], vec![held; Supporter::bytes(&limits)]);
+        let object = Object::analyze(&scene.object.mesh(), &params, &mut object, &Monitor::new()).unwrap();
+        let cloud = scene.cloud().seen_from(&[[0.3, -0.9, 0.8]]).unwrap();
+        let supporter = Supporter::analyze(&cloud, &params, &mut supporter, &Monitor::new()).unwrap();
+        let mut memory = vec![held; predict_bytes(&supporter.limits())];
+        let mut poses = [HangingPose::default(); 5];
+        let found =
+            super::predict(&object, &supporter, &params, &mut poses, &mut memory, &Monitor::new()).unwrap();
+        (found.counts, found.poses.to_vec())
+    };
+    let (counts, poses) = poses_in(0);
+    assert!(!poses.is_empty());
+    assert_eq!((counts, poses), poses_in(0xA5));
+}
+
+#[test]
 fn the_product_gives_the_same_bytes_twice() {
     let scene = Scene::key_on_peg();
     let bits = |params: &Params| std::format!("{:?}", scene.predict(params).0);

@@ -65,9 +65,9 @@ impl<'a> Room<'a> {
     /// Allocates memory for a cloud of `points` points.
     pub(crate) fn new(points: usize, arena: &mut Arena<'a>) -> Result<Self, OutOfMemory> {
         Ok(Self {
-            patches: arena.slice(points)?,
-            representatives: arena.slice(points)?,
-            groups: arena.slice(Support::max_groups(points))?,
+            patches: arena.unset(points)?,
+            representatives: arena.unset(points)?,
+            groups: arena.unset(Support::max_groups(points))?,
         })
     }
 }

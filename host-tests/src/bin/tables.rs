@@ -78,6 +78,8 @@ enum Profile {
     ContactsOnly,
     /// The default method with at most eight releases once a pose stays.
     EightAttempts,
+    /// The default method with poses of any probability, for the calibration on scans.
+    Improbable,
 }
 
 impl Profile {
@@ -91,6 +93,7 @@ impl Profile {
             Self::SitesSettled => Params { candidates, ..ours },
             Self::ContactsOnly => Params { settle: false, ..ours },
             Self::EightAttempts => Params { settle_attempts: 32, ..ours },
+            Self::Improbable => Params { min_probability: 0.0, ..ours },
         }
     }
 }

@@ -35,9 +35,9 @@ impl<'m> PointTreeSlots<'m> {
     /// Memory for at most `points` points.
     pub(crate) fn new(points: usize, arena: &mut Arena<'m>) -> Result<Self, OutOfMemory> {
         Ok(Self {
-            order: arena.slice(points)?,
-            points: arena.slice(points)?,
-            nodes: arena.slice(Bvh::max_nodes(points))?,
+            order: arena.unset(points)?,
+            points: arena.unset(points)?,
+            nodes: arena.unset(Bvh::max_nodes(points))?,
             used: [0; 2],
         })
     }

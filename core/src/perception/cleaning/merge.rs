@@ -63,9 +63,9 @@ pub(super) fn merge<'s>(
 ) -> Result<Kept<'s>, OutOfMemory> {
     let Kept { points: sums, normals: normal_sums, names, is_on_plane } = Kept::new(points.len(), arena)?;
     let mut scratch = arena.scratch();
-    let table = scratch.slice::<u32>(table_size(points.len()))?;
+    let table = scratch.unset::<u32>(table_size(points.len()))?;
     let members = scratch.slice::<u32>(points.len())?;
-    let firsts = scratch.slice::<Point>(points.len())?;
+    let firsts = scratch.unset::<Point>(points.len())?;
     let on_plane = scratch.slice::<u8>(points.len())?;
     planes::mark(points, on_plane, scratch.scratch())?;
     let near = Surroundings::of(
@@ -103,9 +103,9 @@ pub(super) fn merge<'s>(
 impl<'s> Kept<'s> {
     fn new(points: usize, arena: &mut Arena<'s>) -> Result<Self, OutOfMemory> {
         Ok(Self {
-            points: arena.slice(points)?,
-            normals: arena.slice(points)?,
-            names: arena.slice(points)?,
+            points: arena.unset(points)?,
+            normals: arena.unset(points)?,
+            names: arena.unset(points)?,
             is_on_plane: arena.slice(points)?,
         })
     }
