@@ -39,12 +39,14 @@ def main():
         numbers = ", ".join(f"{x:.2f}" for x in doubt)
         print(f"{name}: {numbers}; Brier score {np.mean((p - hangs) ** 2):.4f} on {len(p)} poses")
     said = sure * np.exp(-unseen @ DOUBT)
+    names = ["below 30 %", "30 to 50 %", "50 to 80 %", "80 to 90 %", "90 to 95 %", "95 % or more"]
+    print("      " + " | ".join(f"{name:12}" for name in names))
     for scan in np.unique(scans):
         cells = []
         for low, high in zip(BINS, BINS[1:]):
             of = (scans == scan) & (said >= low) & (said < high + (high == 1.0))
-            cells.append(f"{100 * hangs[of].mean():3.0f} % of {of.sum():3}" if of.any() else "")
-        print(f"{scan:5} " + " | ".join(f"{cell:12}" for cell in cells))
+            cells.append(f"{100 * hangs[of].mean():.0f} % of {of.sum()}" if of.any() else "")
+        print((f"{scan:5} " + " | ".join(f"{cell:12}" for cell in cells)).rstrip())
 
 
 main()

@@ -72,7 +72,7 @@
 #define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 506
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 43008
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 14
-#define HANGPOSE_PREDICT_BYTES_EACH_POSE 396
+#define HANGPOSE_PREDICT_BYTES_EACH_POSE 420
 #define HANGPOSE_VOLUME_BYTES_AT_LEAST 2048
 #define HANGPOSE_VOLUME_BYTES_EACH_BLOCK 2072
 #define HANGPOSE_COMPLETE_BYTES_AT_LEAST 2048
@@ -531,6 +531,12 @@ typedef struct hangpose_pose {
   // Share of the supporter close to the object that no camera saw and that was guessed, 0 to 1. Another view of the
   // supporter would then say more.
   float unseen_supporter;
+  // Direction from the object, in its coordinates, in which a camera would see most of what no camera saw: a unit vector,
+  // or 0, 0, 0.
+  float object_view[3];
+  // Direction from the supporter, in its coordinates, in which a camera would see most of what was guessed close to the
+  // object: a unit vector, or 0, 0, 0.
+  float supporter_view[3];
   // Rest pose: x, y, z of the origin of the object, metres, in supporter coordinates.
   float rest_position[3];
   // Rest pose: x, y, z, w of the unit quaternion that rotates object coordinates into supporter coordinates.

@@ -76,6 +76,12 @@ pub struct hangpose_pose {
     /// Share of the supporter close to the object that no camera saw and that was guessed, 0 to 1. Another view of the
     /// supporter would then say more.
     pub unseen_supporter: f32,
+    /// Direction from the object, in its coordinates, in which a camera would see most of what no camera saw: a unit vector,
+    /// or 0, 0, 0.
+    pub object_view: [f32; 3],
+    /// Direction from the supporter, in its coordinates, in which a camera would see most of what was guessed close to the
+    /// object: a unit vector, or 0, 0, 0.
+    pub supporter_view: [f32; 3],
     /// Rest pose: x, y, z of the origin of the object, metres, in supporter coordinates.
     pub rest_position: [f32; 3],
     /// Rest pose: x, y, z, w of the unit quaternion that rotates object coordinates into supporter coordinates.
@@ -125,6 +131,8 @@ impl From<&HangingPose> for hangpose_pose {
             answer.unseen_object = rest.unseen.object;
             answer.unseen_shadow = rest.unseen.shadow;
             answer.unseen_supporter = rest.unseen.supporter;
+            answer.object_view = rest.unseen.object_view;
+            answer.supporter_view = rest.unseen.supporter_view;
             answer.rest_position = rest.pose.translation.vector.into();
             answer.rest_quaternion = rest.pose.rotation.coords.into();
             answer.sinking = rest.sinking;
@@ -167,6 +175,8 @@ impl hangpose_pose {
             unseen_object: NAN,
             unseen_shadow: NAN,
             unseen_supporter: NAN,
+            object_view: [NAN; 3],
+            supporter_view: [NAN; 3],
             rest_position: [NAN; 3],
             rest_quaternion: [NAN; 4],
             sinking: NAN,

@@ -71,7 +71,13 @@ fn every_number_of_a_pose_reaches_its_field() {
     let mut rest = a_rest();
     (rest.pose, rest.margin) = (rest_pose, margin);
     (rest.sinking, rest.clearance, rest.probability) = (0.31, 0.32, 0.33);
-    rest.unseen = Unseen { object: 0.34, shadow: 0.35, supporter: 0.36 };
+    rest.unseen = Unseen {
+        object: 0.34,
+        shadow: 0.35,
+        supporter: 0.36,
+        object_view: [0.6, 0.8, 0.0],
+        supporter_view: [0.0, 0.6, 0.8],
+    };
     let cost = Cost { collision: 41, boundary: 0.42, contact_area: 0.43, total: 0.44 };
     let matched = SiteMatch { cost, object_site: 45, support_site: 46, is_reversed: true };
     let c = hangpose_pose::from(&HangingPose { pose, rest: Some(rest), matched: Some(matched) });
@@ -80,6 +86,7 @@ fn every_number_of_a_pose_reaches_its_field() {
     assert_eq!((c.position, c.quaternion), ([1.0, 2.0, 3.0], xyzw(&pose)));
     assert_eq!((c.rest_position, c.rest_quaternion), ([4.0, 5.0, 6.0], xyzw(&rest_pose)));
     assert_eq!((c.unseen_object, c.unseen_shadow, c.unseen_supporter), (0.34, 0.35, 0.36));
+    assert_eq!((c.object_view, c.supporter_view), ([0.6, 0.8, 0.0], [0.0, 0.6, 0.8]));
     assert_eq!((c.has_rest, c.sinking, c.clearance, c.probability), (1, 0.31, 0.32, 0.33));
     let m = c.margin;
     assert_eq!((m.tilts, m.least_tilt), (margin.tilts, 0.11));

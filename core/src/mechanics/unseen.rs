@@ -2,7 +2,7 @@
 
 use super::constants::{NEAR_GUESS, NEAR_SHADOW, OFF_MESH};
 use super::{Body, Support};
-use crate::geometry::{Mesh, Point, Pose, Vector};
+use crate::geometry::{Mesh, Point, Pose, Vector, unit_or};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
 
@@ -17,6 +17,12 @@ pub struct Unseen {
     pub shadow: f32,
     /// Share of the supporter close to the object that no camera saw and that was guessed, 0 to 1.
     pub supporter: f32,
+    /// Direction from the object, in its coordinates, in which a camera would see most of what no camera saw: a unit vector,
+    /// or zero.
+    pub object_view: [f32; 3],
+    /// Direction from the supporter, in its coordinates, in which a camera would see most of what was guessed close to the
+    /// object: a unit vector, or zero.
+    pub supporter_view: [f32; 3],
 }
 
 /// Where an object was seen from.
@@ -26,6 +32,8 @@ pub(crate) struct Views<'a> {
     pub(super) viewpoints: &'a [Point],
     /// See [`Unseen::object`].
     pub(super) unseen: f32,
+    /// See [`Unseen::object_view`].
+    pub(super) needed: [f32; 3],
 }
 
 /// The most viewpoints that are kept. Of more, as many are taken, spread over all.
@@ -48,14 +56,16 @@ impl<'a> Views<'a> {
         for (k, viewpoint) in viewpoints.iter_mut().enumerate() {
             *viewpoint = given[k * given.len() / count];
         }
-        Ok(Self { viewpoints, unseen: unseen_directions(&mesh.aabb().centre(), viewpoints) })
+        let (unseen, needed) = unseen_directions(&mesh.aabb().centre(), viewpoints);
+        Ok(Self { viewpoints, unseen, needed })
     }
 }
 
-/// Share of the directions around a centre from which no viewpoint looks at it; 0 without viewpoints.
-fn unseen_directions(centre: &Point, viewpoints: &[Point]) -> f32 {
+/// Share of the directions around a centre from which no viewpoint looks at it, 0 without viewpoints, and their mean
+/// direction.
+fn unseen_directions(centre: &Point, viewpoints: &[Point]) -> (f32, [f32; 3]) {
     if viewpoints.is_empty() {
-        return 0.0;
+        return (0.0, [0.0; 3]);
     }
     let is_seen = |direction: &Vector| {
         viewpoints.iter().any(|viewpoint| {
@@ -63,7 +73,8 @@ fn unseen_directions(centre: &Point, viewpoints: &[Point]) -> f32 {
             direction.dot(&way) > SEES_WELL * way.norm()
         })
     };
-    (0..DIRECTIONS).filter(|&k| !is_seen(&direction(k))).count() as f32 / DIRECTIONS as f32
+    let unseen = || (0..DIRECTIONS).map(direction).filter(|direction| !is_seen(direction));
+    (unseen().count() as f32 / DIRECTIONS as f32, unit_or(unseen().sum(), Vector::zeros()).into())
 }
 
 /// Point of a Fibonacci lattice of [`DIRECTIONS`] points on the unit sphere.
@@ -85,7 +96,7 @@ pub(crate) fn unseen(
         let way = (viewpoint - point).normalize();
         !body.surface.any_hit(&(point + way * OFF_MESH), &way)
     };
-    let (mut close, mut guessed) = (0_u32, 0_u32);
+    let (mut close, mut guessed, mut outwards) = (0_u32, 0_u32, Vector::zeros());
     let (mut near, mut hidden) = (0_u32, 0_u32);
     for (position, patch) in support.positions().zip(support.patches) {
         let point = to_object * position;
@@ -96,7 +107,10 @@ pub(crate) fn unseen(
         let distance = body.field.distance(&point);
         if distance < NEAR_GUESS {
             close += 1;
-            guessed += u32::from(patch.is_guessed());
+            if patch.is_guessed() {
+                guessed += 1;
+                outwards += patch.normal;
+            }
         }
         if distance < NEAR_SHADOW && !views.viewpoints.is_empty() {
             near += 1;
@@ -106,7 +120,13 @@ pub(crate) fn unseen(
         }
     }
     let share = |part: u32, all: u32| part as f32 / all.max(1) as f32;
-    Ok(Unseen { object: views.unseen, shadow: share(hidden, near), supporter: share(guessed, close) })
+    Ok(Unseen {
+        object: views.unseen,
+        shadow: share(hidden, near),
+        supporter: share(guessed, close),
+        object_view: views.needed,
+        supporter_view: unit_or(outwards, Vector::zeros()).into(),
+    })
 }
 
 #[cfg(test)]
@@ -119,7 +139,7 @@ mod tests {
         let centre = Point::new(0.1, 0.2, 0.3);
         let unseen = |ways: &[Vector]| {
             let viewpoints: Vec<Point> = ways.iter().map(|way| centre + way * 0.7).collect();
-            unseen_directions(&centre, &viewpoints)
+            unseen_directions(&centre, &viewpoints).0
         };
         assert_eq!(unseen(&[]), 0.0);
         // A cap of 60 degrees is a quarter of the sphere; two opposite ones are a half; six see all, since no
@@ -128,5 +148,8 @@ mod tests {
         assert!((unseen(&[Vector::x(), -Vector::x()]) - 0.5).abs() < 0.02);
         let axes = [Vector::x(), Vector::y(), Vector::z()];
         assert_eq!(unseen(&axes.map(|axis| [axis, -axis]).concat()), 0.0);
+        // What the camera in front does not see, one behind sees best.
+        let needed = Vector::from(unseen_directions(&centre, &[centre + Vector::x()]).1);
+        assert!((needed + Vector::x()).norm() < 0.02, "{needed}");
     }
 }

@@ -269,11 +269,14 @@ fn candidates(sites: usize, name: &str, contacts: usize) -> String {
 const MUCH_UNSEEN: f32 = 0.1;
 
 /// What another view would show that was guessed, if it is much.
-fn view_that_would_help(unseen: &Unseen) -> Option<&'static str> {
+fn view_that_would_help(unseen: &Unseen) -> Option<String> {
+    let from = |[x, y, z]: [f32; 3]| format!("from the direction ({x:.1}, {y:.1}, {z:.1}) of its frame");
     if unseen.shadow > MUCH_UNSEEN {
-        Some("; another view of the object would show whether it has room there for the supporter")
+        let from = from(unseen.object_view);
+        Some(format!("; a view of the object {from} would show whether it has room there for the supporter"))
     } else if unseen.supporter > MUCH_UNSEEN {
-        Some("; another view of the supporter would show its far side, which was guessed")
+        let from = from(unseen.supporter_view);
+        Some(format!("; a view of the supporter {from} would show its far side, which was guessed"))
     } else {
         None
     }

@@ -127,6 +127,20 @@ fn either_side_may_be_images() {
     assert!(run.status == Some(0) && run.stdout.contains("; cloud of "), "{}", run.stderr);
     let run = images.run(&format!("predict --object {} --supporter hook.ply", mug.display()));
     assert_eq!(run.status, Some(0), "{}", run.stderr);
+
+    // The mesh keeps its viewpoints, and others may be given.
+    let mesh = "--poses pose-*.txt --mask mask-*.png --label 7 --complete -o mug.ply";
+    let run = images.run(&format!("scan --depth depth-*.png {how} {mesh}"));
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+    let unseen = |more: &str| {
+        let run = images
+            .run(&format!("predict --object mug.ply --supporter {} --top 1 --json - {more}", hook.display()));
+        run.json()["poses"][0]["unseen"]["object"].as_f64().unwrap()
+    };
+    let mesh = read_mesh(&images.folder.path().join("mug.ply")).unwrap();
+    assert_eq!(mesh.viewpoints.len(), EYES.len());
+    assert!(unseen("") < 0.2, "the images look from all sides");
+    assert!((unseen("--object-viewpoint 0,0,1") - 0.75).abs() < 0.02);
 }
 
 #[test]

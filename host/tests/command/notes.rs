@@ -42,7 +42,9 @@ fn missing_normals_are_estimated() {
     let run = finish(command().args(predict).arg(&scene.ring).arg("--supporter").arg(&upper));
     assert!(run.stderr.contains("face the viewpoint"), "{}", run.stderr);
     assert_eq!(run.status, Some(0), "{}", run.stdout);
-    assert_eq!(run.json()["poses"][0]["is_near_guess"], true, "{}", run.stdout);
+    let unseen = &run.json()["poses"][0]["unseen"];
+    assert!(unseen["supporter"].as_f64() > Some(0.3), "{}", run.stdout);
+    assert!(unseen["supporter_view"][2].as_f64() > Some(0.7), "a camera above would see it: {}", run.stdout);
 }
 
 #[test]

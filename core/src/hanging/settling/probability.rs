@@ -39,7 +39,7 @@ const PER_SUPPORTER: f32 = 0.6;
 
 /// Share of the poses that hang, of those that would hang if what no camera has seen were as it is guessed.
 fn share_that_is_right(unseen: &Unseen) -> f32 {
-    let Unseen { object, shadow, supporter } = unseen;
+    let Unseen { object, shadow, supporter, .. } = unseen;
     libm::expf(-(PER_OBJECT * object + PER_SHADOW * shadow + PER_SUPPORTER * supporter))
 }
 
