@@ -1,5 +1,6 @@
 //! Points that say the same as others: duplicates, and more points than the mechanics can tell apart.
 
+use super::cubes::{cube, hash};
 use super::planes;
 use super::surroundings::Surroundings;
 use crate::geometry::{Point, Vector, unit_or};
@@ -181,17 +182,7 @@ fn group(
     count
 }
 
-/// The cube with an edge of `edge` metres that a point is in.
-fn cube(point: &Point, edge: f32) -> [u32; 3] {
-    [point.x, point.y, point.z].map(|x| libm::floorf(x / edge) as i32 as u32)
-}
-
 /// The very place of a point. Zero has two representations.
 fn bits(point: &Point) -> [u32; 3] {
     [point.x, point.y, point.z].map(|x| (x + 0.0).to_bits())
-}
-
-pub(super) fn hash([x, y, z]: [u32; 3]) -> u32 {
-    let mixed = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77) ^ z.wrapping_mul(0xC2B2_AE3D);
-    (mixed ^ mixed >> 15).wrapping_mul(0x2C1B_3C6D) ^ mixed >> 13
 }

@@ -1,6 +1,7 @@
 //! From the points that a camera or a file gives to those that are surface: duplicates are merged, strays dropped, and walls
 //! and tables told apart from what things hang on.
 
+mod cubes;
 mod merge;
 mod planes;
 pub(crate) mod spacing;

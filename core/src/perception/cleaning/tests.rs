@@ -139,3 +139,28 @@ fn something_is_left_of_any_cloud() {
         assert!(!cleaned(&points, &unknown(&points)).0.is_empty());
     }
 }
+
+#[test]
+fn a_wall_is_thinned_the_more_the_farther_it_is_from_what_hangs() {
+    let mut random = Random::new(5);
+    let mut points = bar(3000, Point::new(0.0, 0.0, 0.1), &mut random);
+    let surface = points.len() as u32;
+    points.extend(square(60_000, 2.0, Point::new(0.013, 0.013, 0.013), 0.001, &mut random));
+    let (kept, on_planes, counts) = cleaned(&points, &unknown(&points));
+    assert!(kept.iter().filter(|index| **index < surface).count() > 2900 && counts.strays == 0);
+    // 2 m by 2 m in squares of 5 cm are 1600, and 0.6 m by 0.6 m in squares of 2 cm are 900.
+    assert!((1500..4500).contains(&on_planes.len()), "{}", on_planes.len());
+    // No gap: every square of 10 cm has points, nearer ones more.
+    let in_square = |x: f32, y: f32| {
+        let is_in = |index: &&u32| {
+            let point = points[**index as usize];
+            (x..x + 0.1).contains(&point.x) && (y..y + 0.1).contains(&point.y)
+        };
+        on_planes.iter().filter(is_in).count()
+    };
+    for k in 0..400 {
+        let [x, y] = [k % 20, k / 20].map(|i| i as f32 * 0.1 - 0.987);
+        assert!(in_square(x, y) >= 1, "{x} {y}");
+    }
+    assert!(in_square(-0.05, -0.05) > 3 * in_square(0.8, 0.8));
+}
