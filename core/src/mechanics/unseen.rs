@@ -150,6 +150,6 @@ mod tests {
         assert_eq!(unseen(&axes.map(|axis| [axis, -axis]).concat()), 0.0);
         // What the camera in front does not see, one behind sees best.
         let needed = Vector::from(unseen_directions(&centre, &[centre + Vector::x()]).1);
-        assert!((needed + Vector::x()).norm() < 0.02, "{needed}");
+        assert!((needed + Vector::x()).norm() < 0.05, "{needed}");
     }
 }
