@@ -11,7 +11,7 @@ use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
 const CUBE: f32 = 0.001;
 /// Edge of the cubes within which the points on a large plane are merged, metres. Nothing hangs there, and a plane needs few
 /// points to stop an object: less than the mechanics bridges.
-const PLANE_CUBE: f32 = 0.02;
+const PLANE_CUBE: f32 = 0.01;
 /// Edge of the cubes within which the points of a large plane are merged far from all that is not on a plane, metres: coarse, but
 /// patches follow the spacing, so that the plane still has no gaps.
 const FAR_CUBE: f32 = 0.05;
