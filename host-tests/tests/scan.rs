@@ -233,5 +233,6 @@ fn clouds_lie_on_the_torus_with_normals_that_face_out() {
     let share = outwards.count() as f32 / normals.len() as f32;
     assert!(share > 0.9, "{share}");
     let one = cloud(&images[..1]);
-    assert_eq!((one.normals, one.viewpoints), (None, vec![images[0].viewpoint().into()]));
+    assert_eq!(one.normals.map(|normals| normals.len()), Some(one.points.len()));
+    assert_eq!(one.viewpoints, [<[f32; 3]>::from(images[0].viewpoint())]);
 }
