@@ -92,8 +92,11 @@ pub(crate) fn unseen(
     meter: &mut Meter,
 ) -> Result<Unseen, Stop> {
     let (to_object, views) = (pose.inverse(), &body.views);
+    if views.viewpoints.is_empty() && !support.patches.iter().any(|patch| patch.is_guessed()) {
+        return Ok(Unseen::default());
+    }
     let sees = |viewpoint: &Point, point: &Point| {
-        let way = (viewpoint - point).normalize();
+        let way = unit_or(viewpoint - point, Vector::z());
         !body.surface.any_hit(&(point + way * OFF_MESH), &way)
     };
     let (mut close, mut guessed, mut outwards) = (0_u32, 0_u32, Vector::zeros());
