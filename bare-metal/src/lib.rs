@@ -4,7 +4,7 @@
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
 use hangpose_core::geometry::{Cloud, Mesh};
-use hangpose_core::hanging::{HangingPose, Object, Supporter, predict, predict_bytes};
+use hangpose_core::hanging::{HangingPose, Object, Request, Supporter, predict, predict_bytes};
 use hangpose_core::memory::Limits;
 use hangpose_core::{Candidates, Monitor, Params};
 
@@ -75,7 +75,7 @@ fn best(
     let cloud = Cloud::new(points, None).ok()?;
     let supporter = Supporter::analyze(&cloud, &PARAMS, supporter_memory, &monitor).ok()?;
     let mut poses = [HangingPose::default(); 1];
-    let prediction = predict(&object, &supporter, &PARAMS, &mut poses, working, &monitor).ok()?;
+    let prediction = predict(&object, &supporter, &Request::ANY, &PARAMS, &mut poses, working, &monitor).ok()?;
     if let Some(best) = prediction.poses.first() {
         *position = best.pose.translation.vector.into();
     }

@@ -26,6 +26,18 @@ impl<'a, T: Copy> Best<'a, T> {
         }
     }
 
+    /// Drops the items of which `is_dropped` is true.
+    pub(crate) fn drop_where(&mut self, is_dropped: impl Fn(&T) -> bool) {
+        let mut kept = 0;
+        for index in 0..self.len {
+            if !is_dropped(&self.slots[index]) {
+                self.slots[kept] = self.slots[index];
+                kept += 1;
+            }
+        }
+        self.len = kept;
+    }
+
     /// The worst item if the list is full: the next one to be dropped.
     pub(crate) fn next_to_go(&self) -> Option<&T> {
         if self.len == self.slots.len() { self.slots.last() } else { None }
@@ -61,6 +73,10 @@ mod tests {
         }
         assert_eq!(best.next_to_go(), Some(&(2, 'e')));
         assert_eq!(best.into_slice(), [(1, 'd'), (2, 'b'), (2, 'e')]);
+        let mut slots = [5, 2, 3, 0];
+        let mut best = Best::filled(&mut slots, 3);
+        best.drop_where(|item| *item == 2);
+        assert_eq!(best.into_slice(), [5, 3]);
         let mut none: [u8; 0] = [];
         let mut best = Best::new(&mut none);
         best.offer(1, |a, b| a < b);

@@ -60,7 +60,7 @@
 //!
 //! let mut poses = [HangingPose::default(); 10];
 //! let mut memory = vec![0; predict_bytes(&limits)];
-//! let prediction = predict(&object, &supporter, &params, &mut poses, &mut memory, &monitor)?;
+//! let prediction = predict(&object, &supporter, &Request::ANY, &params, &mut poses, &mut memory, &monitor)?;
 //! assert!(prediction.rejection.is_none());
 //! println!("best: {}", poses[0].pose);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -1,7 +1,7 @@
 //! `cargo bench -p hangpose-ffi`: overhead of a call through the C interface relative to the same call in Rust, on the
 //! samples. The two calls alternate, so that both run under the same load. Fails if the median overhead is above 1 %.
 
-use hangpose::hanging::{HangingPose, Object, predict, predict_bytes};
+use hangpose::hanging::{HangingPose, Object, Request, predict, predict_bytes};
 use hangpose::memory::Limits;
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files};
 use hangpose_ffi::*;
@@ -29,7 +29,7 @@ fn main() -> ExitCode {
     let limits = Limits { points: cloud.points().len(), ..Object::limits(&mesh, &params) };
     let mut work = vec![0; predict_bytes(&limits)];
     let mut rust_predict = || {
-        let found = predict(&object, &supporter, &params, &mut poses, &mut work, &monitor);
+        let found = predict(&object, &supporter, &Request::ANY, &params, &mut poses, &mut work, &monitor);
         black_box(found.expect("a prediction"));
     };
     let mut memory = vec![0; Object::bytes(&limits)];

@@ -9,7 +9,7 @@
 //! its work; and for each pose the words of `hangpose_pose` after `struct_size`.
 
 use hangpose::geometry::{Cloud, Mesh};
-use hangpose::hanging::HangingPose;
+use hangpose::hanging::{HangingPose, Request};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files, predict_poses};
 use hangpose_ffi::{
     HANGPOSE_OK, HANGPOSE_PROFILE_PAPER, HANGPOSE_REJECTED, hangpose_pose, hangpose_prediction,
@@ -74,7 +74,7 @@ fn words(thing: &Thing, support: &Support, profile: u32) -> Result<Vec<u32>, Box
     let object = analyze_object(&mesh, &params, &mut memory, &monitor)?;
     let supporter = analyze_supporter(&cloud, &params, &mut more_memory, &monitor)?;
     let mut poses = [HangingPose::default(); CAPACITY];
-    let found = predict_poses(&object, &supporter, &params, &mut poses, &monitor)?;
+    let found = predict_poses(&object, &supporter, &Request::ANY, &params, &mut poses, &monitor)?;
 
     let floats = |rows: &[[f32; 3]]| rows.iter().flatten().map(|x| x.to_bits()).collect::<Vec<_>>();
     let (vertices, triangles) = (&thing.vertices, &thing.triangles);

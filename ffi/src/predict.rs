@@ -13,7 +13,9 @@ use core::ffi::c_void;
 use hangpose_core::Monitor;
 use hangpose_core::hanging::contacts::CandidateCounts;
 use hangpose_core::hanging::sites::MatchingCounts;
-use hangpose_core::hanging::{HangingPose, Prediction, SearchCounts, SettlingCounts, predict, predict_bytes};
+use hangpose_core::hanging::{
+    HangingPose, Prediction, Request, SearchCounts, SettlingCounts, predict, predict_bytes,
+};
 
 /// Result of hangpose_predict beside the poses: the number of candidates left after each step of the method, and
 /// the work done. The fields matching_* are 0 with HANGPOSE_CANDIDATES_CONTACTS.
@@ -138,7 +140,8 @@ pub unsafe extern "C" fn hangpose_predict(
         let (object, supporter) = (object.model(), supporter.model());
         let (slots, memory) = pose_slots(memory, pose_capacity, predict_bytes(&supporter.limits()))?;
         let none = Monitor::new();
-        let found = predict(object, supporter, &params, slots, memory, monitor.unwrap_or(&none))?;
+        let found =
+            predict(object, supporter, &Request::ANY, &params, slots, memory, monitor.unwrap_or(&none))?;
         for (index, pose) in found.poses.iter().enumerate() {
             // SAFETY: aligned, not null, and `index` is below the capacity that the caller vouches for.
             unsafe { poses.add(index).write(pose.into()) };

@@ -3,7 +3,7 @@
 use hangpose::geometry::{Point, Pose, Vector};
 use hangpose::hanging::sites::{self, Cost, SiteMatch};
 use hangpose::hanging::{
-    Counts, HangingPose, Prediction, Rejection, Rest, SearchCounts, SettlingCounts, Stage, contacts,
+    Counts, HangingPose, Prediction, Rejection, Request, Rest, SearchCounts, SettlingCounts, Stage, contacts,
 };
 use hangpose::mechanics::{Contact, Margin, Unseen};
 use hangpose::{Monitor, Params, Stop, Work, analyze_object, analyze_supporter, files, predict_poses};
@@ -148,6 +148,6 @@ fn a_rest() -> Rest {
     let object = analyze_object(&mesh.mesh().unwrap(), &params, &mut memory, &monitor).unwrap();
     let supporter = analyze_supporter(&cloud.cloud().unwrap(), &params, &mut more_memory, &monitor).unwrap();
     let mut poses = [HangingPose::default()];
-    let found = predict_poses(&object, &supporter, &params, &mut poses, &monitor).unwrap();
+    let found = predict_poses(&object, &supporter, &Request::ANY, &params, &mut poses, &monitor).unwrap();
     found.poses.first().and_then(|pose| pose.rest).expect("the mug hangs on the hook")
 }

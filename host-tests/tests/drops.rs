@@ -1,6 +1,6 @@
 //! Success rates on a fixed set of pairs, with floors that a broken predictor does not reach.
 
-use hangpose::hanging::HangingPose;
+use hangpose::hanging::{HangingPose, Request};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter};
 use host_tests::judge::{Bullet, Judge, Scene};
 use host_tests::tables::case::{Case, Fit, made};
@@ -19,7 +19,11 @@ fn best(case: &Case, params: &Params) -> Option<HangingPose> {
     let object = analyze_object(&case.object.mesh(), params, &mut memory, &monitor).unwrap();
     let supporter = analyze_supporter(&cloud.cloud().unwrap(), params, &mut more_memory, &monitor).unwrap();
     let mut poses = [HangingPose::default(); 1];
-    hangpose::predict_poses(&object, &supporter, params, &mut poses, &monitor).unwrap().poses.first().copied()
+    hangpose::predict_poses(&object, &supporter, &Request::ANY, params, &mut poses, &monitor)
+        .unwrap()
+        .poses
+        .first()
+        .copied()
 }
 
 /// Number of pairs whose best pose hangs, after each of `changes` to it.

@@ -1,7 +1,7 @@
 //! Clouds of supporters as cameras and people hand them over: the best pose must hang on the true scene, judged in Bullet.
 
 use hangpose::files::{CloudFile, read_mesh};
-use hangpose::hanging::HangingPose;
+use hangpose::hanging::{HangingPose, Request};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses, sample_supporter};
 use host_tests::judge::{Bullet, Judge, Scene};
 use host_tests::shapes::Random;
@@ -153,7 +153,7 @@ fn outcome(case: &Case, raw: &Raw) -> Result<(), String> {
     let cloud = raw.cloud.cloud().unwrap();
     let supporter = analyze_supporter(&cloud, &params, &mut more_memory, &monitor).unwrap();
     let mut poses = [HangingPose::default()];
-    let found = predict_poses(&object, &supporter, &params, &mut poses, &monitor).unwrap();
+    let found = predict_poses(&object, &supporter, &Request::ANY, &params, &mut poses, &monitor).unwrap();
     let Some(best) = found.poses.first() else {
         return Err(format!("no pose: {:?}", found.rejection.map(|r| r.stage)));
     };

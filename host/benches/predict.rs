@@ -1,6 +1,6 @@
 //! `cargo bench`: time of each stage and memory of one prediction, for the samples on one thread.
 
-use hangpose::hanging::{HangingPose, Object, Supporter, predict, predict_bytes};
+use hangpose::hanging::{HangingPose, Object, Request, Supporter, predict, predict_bytes};
 use hangpose::memory::Limits;
 use hangpose::{Monitor, Params, files};
 use std::path::Path;
@@ -32,7 +32,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let supporter = Supporter::analyze(&cloud, &params, supporter_memory, &monitor)?;
                 let after_supporter = Instant::now();
                 let mut poses = [HangingPose::default(); 10];
-                std::hint::black_box(predict(&object, &supporter, &params, &mut poses, scratch, &monitor)?);
+                std::hint::black_box(predict(
+                    &object,
+                    &supporter,
+                    &Request::ANY,
+                    &params,
+                    &mut poses,
+                    scratch,
+                    &monitor,
+                )?);
                 let end = Instant::now();
                 let stages = [
                     after_object - start,

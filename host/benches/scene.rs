@@ -1,7 +1,7 @@
 //! `cargo bench`: time of a prediction with the default profile on the sample hook alone, and with 290,000 points of the room
 //! around it: a wall behind the hook, a floor, and a table, with noise of a millimetre.
 
-use hangpose::hanging::{HangingPose, predict, predict_bytes};
+use hangpose::hanging::{HangingPose, Request, predict, predict_bytes};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files};
 use std::path::Path;
 use std::time::Instant;
@@ -32,7 +32,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let after_supporter = Instant::now();
             let mut scratch = vec![0; predict_bytes(&supporter.limits())];
             let mut poses = [HangingPose::default(); 10];
-            std::hint::black_box(predict(&object, &supporter, &params, &mut poses, &mut scratch, &monitor)?);
+            std::hint::black_box(predict(
+                &object,
+                &supporter,
+                &Request::ANY,
+                &params,
+                &mut poses,
+                &mut scratch,
+                &monitor,
+            )?);
             let end = Instant::now();
             let stages = [after_supporter - after_object, end - after_supporter, end - start];
             for (times, stage) in times.iter_mut().zip(stages) {

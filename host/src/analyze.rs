@@ -3,7 +3,7 @@
 use crate::files::{CloudFile, MeshFile};
 use crate::geometry::{Cloud, CloudError, Mesh, MeshError};
 use crate::hanging::{
-    AnalysisError, HangingPose, Object, PredictError, Prediction, Supporter, predict, predict_bytes,
+    AnalysisError, HangingPose, Object, PredictError, Prediction, Request, Supporter, predict, predict_bytes,
 };
 use crate::memory::Limits;
 use crate::perception::sampling;
@@ -97,11 +97,20 @@ pub fn analyze_supporter<'m>(
 pub fn predict_poses<'p>(
     object: &Object,
     supporter: &Supporter,
+    request: &Request,
     params: &Params,
     poses: &'p mut [HangingPose],
     monitor: &Monitor,
 ) -> Result<Prediction<'p>, PredictError> {
-    predict(object, supporter, params, poses, &mut vec![0; predict_bytes(&supporter.limits())], monitor)
+    predict(
+        object,
+        supporter,
+        request,
+        params,
+        poses,
+        &mut vec![0; predict_bytes(&supporter.limits())],
+        monitor,
+    )
 }
 
 /// Samples `count` points and normals on the mesh of a supporter.

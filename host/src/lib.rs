@@ -13,7 +13,7 @@
 //! let object = analyze_object(&mug.mesh()?, &params, &mut memory, &monitor)?;
 //! let supporter = analyze_supporter(&hook.cloud()?, &params, &mut more_memory, &monitor)?;
 //! let mut poses = [hanging::HangingPose::default(); 10];
-//! let prediction = predict_poses(&object, &supporter, &params, &mut poses, &monitor)?;
+//! let prediction = predict_poses(&object, &supporter, &hanging::Request::ANY, &params, &mut poses, &monitor)?;
 //! # Ok(())
 //! # }
 //! ```

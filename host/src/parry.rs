@@ -5,7 +5,7 @@
 //! ```
 //! use hangpose::geometry::{Cloud, Mesh};
 //! use hangpose::{Monitor, Params, analyze_object, analyze_supporter, parry, predict_poses};
-//! use hangpose::{hanging::HangingPose, perception::sampling};
+//! use hangpose::{hanging::{HangingPose, Request}, perception::sampling};
 //! use parry3d::{math, query, shape::{Capsule, TriMesh}};
 //!
 //! # // A ring of 3 cm radius, 6 mm thick.
@@ -40,7 +40,7 @@
 //! let cloud = Cloud::new(&points, Some(&normals))?;
 //! let supporter = analyze_supporter(&cloud, &params, &mut supporter_memory, &monitor)?;
 //! let mut poses = [HangingPose::default(); 10];
-//! let prediction = predict_poses(&object, &supporter, &params, &mut poses, &monitor)?;
+//! let prediction = predict_poses(&object, &supporter, &Request::ANY, &params, &mut poses, &monitor)?;
 //!
 //! // Check the best pose with parry: the peg is in the ring's hole, which has a radius of 27 mm.
 //! let pose = parry::pose_to_parry(&prediction.poses[0].pose);

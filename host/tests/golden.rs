@@ -3,7 +3,7 @@
 //! A changed hash means that the method's numbers changed, not that they are wrong. After an intended change, use the
 //! new hash, which the failing test prints, and check that a Cortex-M7 gives it too.
 
-use hangpose::hanging::{HangingPose, Rest};
+use hangpose::hanging::{HangingPose, Request, Rest};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, files, predict_poses};
 use std::path::Path;
 
@@ -16,7 +16,8 @@ fn hash(object: &str, supporter: &str, params: &Params) -> String {
     let object = analyze_object(&mesh.mesh().unwrap(), params, &mut memory, &monitor).unwrap();
     let supporter = analyze_supporter(&cloud.cloud().unwrap(), params, &mut more_memory, &monitor).unwrap();
     let mut poses = [HangingPose::default(); 10];
-    let poses = predict_poses(&object, &supporter, params, &mut poses, &monitor).unwrap().poses;
+    let poses =
+        predict_poses(&object, &supporter, &Request::ANY, params, &mut poses, &monitor).unwrap().poses;
     assert!(!poses.is_empty());
     let hash = poses
         .iter()

@@ -14,20 +14,34 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// The first step that left nothing. With `settle` the poses that were released count, too.
+    /// The step that left nothing. With `settle` the poses that were released count, too.
     pub(super) fn empty_stage(&self, settle: bool) -> Option<Stage> {
-        let empty = self.search.empty_stage();
-        if empty.is_some() || !settle || self.settling.probable > 0 {
-            empty
-        } else if self.settling.unseen > 0 {
-            Some(Stage::Unseen)
-        } else {
-            Some(self.settling.failure())
+        if let Some(stage) = self.search.empty_stage() {
+            return Some(if self.settling.outside > 0 { Stage::OutsideRegion } else { stage });
         }
+        if !settle || self.settling.probable > 0 {
+            return None;
+        }
+        if self.settling.unseen > 0 {
+            return Some(Stage::Unseen);
+        }
+        Some(self.settling.unmet_wish().unwrap_or_else(|| self.settling.failure()))
     }
 }
 
 impl SettlingCounts {
+    /// The wish for which most poses were dropped.
+    fn unmet_wish(&self) -> Option<Stage> {
+        let wishes = [
+            (self.no_approach, Stage::NoApproach),
+            (self.other_kind, Stage::OtherKind),
+            (self.in_scene, Stage::InScene),
+            (self.outside, Stage::OutsideRegion),
+        ];
+        let most = wishes.iter().rev().max_by_key(|(count, _)| *count).filter(|(count, _)| *count > 0);
+        most.map(|(_, stage)| *stage)
+    }
+
     /// The most frequent way in which released poses failed.
     fn failure(&self) -> Stage {
         let fates = [

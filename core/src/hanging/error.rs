@@ -1,5 +1,6 @@
 //! Why an object or a supporter cannot be analysed, and why nothing can be predicted.
 
+use super::request::RequestError;
 use crate::memory::OutOfMemory;
 use crate::params::ParamsError;
 
@@ -45,6 +46,8 @@ pub enum PredictError {
     Params(ParamsError),
     /// The memory is too small.
     OutOfMemory(OutOfMemory),
+    /// The request is invalid.
+    Request(RequestError),
     /// The params ask to let the object go, but it was analysed without [`voxels`](crate::Params::voxels).
     NoDistanceField,
 }
@@ -52,6 +55,12 @@ pub enum PredictError {
 impl From<ParamsError> for PredictError {
     fn from(error: ParamsError) -> Self {
         Self::Params(error)
+    }
+}
+
+impl From<RequestError> for PredictError {
+    fn from(error: RequestError) -> Self {
+        Self::Request(error)
     }
 }
 
@@ -66,6 +75,7 @@ impl core::fmt::Display for PredictError {
         match self {
             Self::Params(error) => error.fmt(f),
             Self::OutOfMemory(error) => error.fmt(f),
+            Self::Request(error) => error.fmt(f),
             Self::NoDistanceField => f.write_str(
                 "the object was analysed with voxels = 0: analyse it and the supporter with the params of the prediction",
             ),

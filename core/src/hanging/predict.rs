@@ -5,7 +5,7 @@ use super::found::Found;
 use super::method;
 use super::scene::Scene;
 use super::settling::Settling;
-use super::{HangingPose, Object, PredictError, Rejection, Supporter};
+use super::{HangingPose, Object, PredictError, Rejection, Request, Supporter};
 use crate::memory::{Arena, Limits, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::Params;
@@ -38,16 +38,22 @@ pub const fn predict_bytes(limits: &Limits) -> usize {
 /// [`Params::settle`] poses are released under gravity, and only those that stay are given. `memory` is working memory,
 /// [`predict_bytes`] of it; its contents do not matter.
 ///
+/// `request` says how and where the object shall hang and what it must not touch; with [`Request::ANY`] it may hang anywhere.
+/// Without [`Params::settle`] only its regions count, and these only with
+/// [`Candidates::Contacts`](crate::Candidates::Contacts).
+///
 /// The object and the supporter must have been analysed with the same `params`.
 pub fn predict<'p>(
     object: &Object,
     supporter: &Supporter,
+    request: &Request,
     params: &Params,
     poses: &'p mut [HangingPose],
     memory: &mut [u8],
     monitor: &Monitor,
 ) -> Result<Prediction<'p>, PredictError> {
     params.validate()?;
+    request.validate()?;
     let arena = Arena::new(memory, predict_bytes(&supporter.limits()))?;
     let mut meter = Meter::new(monitor);
     let body = object.body();
@@ -56,6 +62,7 @@ pub fn predict<'p>(
         centre_of_mass: object.centre_of_mass(),
         body: body.as_ref(),
         support: supporter.support(),
+        request,
         params,
     };
     let found = method::search(&scene, (object.places(), supporter.places()), poses, arena, &mut meter)?;

@@ -1,5 +1,6 @@
 //! What a method's search knows of the object and the supporter, beside the places on them.
 
+use super::request::Request;
 use crate::geometry::{Point, Surface};
 use crate::mechanics::{Body, Support};
 use crate::params::Params;
@@ -15,5 +16,6 @@ pub(super) struct Scene<'a> {
     pub(super) body: Option<&'a Body<'a>>,
     /// The supporter as mechanics sees it, with its points.
     pub(super) support: &'a Support<'a>,
+    pub(super) request: &'a Request<'a>,
     pub(super) params: &'a Params,
 }

@@ -27,6 +27,16 @@ pub enum Stage {
     /// Released poses come to rest firmly enough, but too much of what would carry or be in the way was not seen by any camera
     /// ([`Unseen`](crate::mechanics::Unseen)).
     Unseen,
+    /// The region that was asked for has no place to hang on or by, or poses come to rest outside of it
+    /// ([`Request::on`](super::Request::on), [`Request::by`](super::Request::by)).
+    OutsideRegion,
+    /// Poses collide with the scene or with objects that hang already.
+    InScene,
+    /// Poses stay, but hang in another way than those that are allowed ([`Request::allow`](super::Request::allow)).
+    OtherKind,
+    /// Poses stay, but no straight way in the direction that was asked for leads to them
+    /// ([`Request::approach`](super::Request::approach)).
+    NoApproach,
 }
 
 impl core::fmt::Display for Stage {
@@ -49,6 +59,10 @@ impl core::fmt::Display for Stage {
             Self::NeverRests => "no released pose stays: most often the object is still moving when the time is up",
             Self::TooLoose => "no released pose stays: most often the object is wedged where it rests, or a small disturbance brings it down",
             Self::Unseen => "poses stay only if what no camera has seen is as it is guessed, which is not likely enough: another view of the object or of the supporter would help",
+            Self::OutsideRegion => "the object could hang only outside the region that was asked for, or the region has no place to hang on or by",
+            Self::InScene => "every pose touches the scene or an object that hangs already",
+            Self::OtherKind => "poses stay, but none hangs in a way that was allowed",
+            Self::NoApproach => "poses stay, but no straight way in the direction that was asked for leads to any of them",
         })
     }
 }

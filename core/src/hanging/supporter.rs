@@ -105,7 +105,12 @@ impl<'m> Supporter<'m> {
         let guessed = is_guessed.iter().filter(|flag| **flag > 0).count();
         let tree = tree.into_tree();
         let support = match params.uses_mechanics() {
-            true => Support::fit(tree, (in_tree_order, spacings, is_guessed), room, scratch.scratch())?,
+            true => Support::fit(
+                tree,
+                (in_tree_order, spacings, is_guessed, is_excluded),
+                room,
+                scratch.scratch(),
+            )?,
             false => Support::bare(tree),
         };
         let seen = SupporterCloud { tree: &tree, points, normals: in_tree_order, is_excluded, params };

@@ -91,7 +91,7 @@ fn predict<'p>(
     monitor: &Monitor,
 ) -> Result<Prediction<'p>, PredictError> {
     let memory = &mut vec![0; predict_bytes(&supporter.limits())];
-    super::predict(object, supporter, params, poses, memory, monitor)
+    super::predict(object, supporter, &Request::ANY, params, poses, memory, monitor)
 }
 
 /// What a pose of the paper's matching costs.
@@ -533,8 +533,16 @@ fn what_the_memory_held_does_not_matter() {
         let supporter = Supporter::analyze(&cloud, &params, &mut supporter, &Monitor::new()).unwrap();
         let mut memory = vec![held; predict_bytes(&supporter.limits())];
         let mut poses = [HangingPose::default(); 5];
-        let found =
-            super::predict(&object, &supporter, &params, &mut poses, &mut memory, &Monitor::new()).unwrap();
+        let found = super::predict(
+            &object,
+            &supporter,
+            &Request::ANY,
+            &params,
+            &mut poses,
+            &mut memory,
+            &Monitor::new(),
+        )
+        .unwrap();
         (found.counts, found.poses.to_vec())
     };
     let (counts, poses) = poses_in(0);
@@ -561,7 +569,15 @@ fn exactly_enough_memory_lets_go() {
             memory.fill(fill);
             let mut poses = [HangingPose::default(); 4];
             let memory = &mut memory[from..from + size];
-            let found = super::predict(object, supporter, &product(), &mut poses, memory, &Monitor::new());
+            let found = super::predict(
+                object,
+                supporter,
+                &Request::ANY,
+                &product(),
+                &mut poses,
+                memory,
+                &Monitor::new(),
+            );
             found.map(|prediction| prediction.poses.to_vec())
         };
         let first = run(0, needed, 0).unwrap();

@@ -78,40 +78,40 @@ impl Default for Contact {
     }
 }
 
-/// The stability margins and the contacts of a rest pose.
-pub(crate) struct Firmness {
-    pub(crate) margin: Margin,
-    pub(crate) contacts: heapless::Vec<Contact, MAX_CONTACTS>,
-}
-
-/// Tests the stability of the rest pose `rest`: gravity tilts in every direction, and then it jolts. A tilt
-/// below `least`, radians, ends the test: the tilts of the remaining directions and the jolt time are zero.
-pub(crate) fn firmness(
+/// The contacts that carry the object at the rest pose `rest`.
+pub(crate) fn carrying_contacts(
     scene: (&Body, &Support),
     rest: &Pose,
+    down: &Vector,
+    params: &Params,
+    sleeps: &mut [Sleep],
+    meter: &mut Meter,
+) -> Result<heapless::Vec<Contact, MAX_CONTACTS>, Stop> {
+    let mut motion = Motion::new(scene, scene.0.at(rest), Settings::damped(params), sleeps);
+    for _ in 0..FORCE_STEPS {
+        motion.step(&(down * GRAVITY), meter)?;
+    }
+    // The capacity suffices for all that matter; more contacts between flat faces are redundant.
+    let carrying = motion.loaded_contacts().take(MAX_CONTACTS);
+    Ok(carrying.map(|(position, normal, force)| Contact { position, normal, force }).collect())
+}
+
+/// Tests the stability of the rest pose `rest`, carried by `contacts`: gravity tilts in every direction, and then it jolts. A
+/// tilt below `least`, radians, ends the test: the tilts of the remaining directions and the jolt time are zero.
+pub(crate) fn margin(
+    scene: (&Body, &Support),
+    (rest, contacts): (&Pose, &[Contact]),
     down: &Vector,
     params: &Params,
     least: f32,
     sleeps: &mut [Sleep],
     meter: &mut Meter,
-) -> Result<Firmness, Stop> {
+) -> Result<Margin, Stop> {
     let body = scene.0;
     let settings = Settings::damped(params);
     let start = body.at(rest);
-    let contacts = {
-        let mut motion = Motion::new(scene, start, settings, sleeps);
-        for _ in 0..FORCE_STEPS {
-            motion.step(&(down * GRAVITY), meter)?;
-        }
-        let mut contacts = heapless::Vec::new();
-        for (position, normal, force) in motion.loaded_contacts() {
-            // The capacity suffices for all that matter; more contacts between flat faces are redundant.
-            let _ = contacts.push(Contact { position, normal, force });
-        }
-        contacts
-    };
     let (mut weight, mut moment) = (0.0, Vector::zeros());
-    for contact in &contacts {
+    for contact in contacts {
         weight += contact.force;
         moment += contact.position.coords * contact.force;
     }
@@ -147,7 +147,7 @@ pub(crate) fn firmness(
     margin.escape_ratio = if lever > 0.0 { margin.escape_rise / lever } else { 0.0 };
     margin.knock_speed = libm::sqrtf(2.0 * GRAVITY * margin.escape_rise);
     margin.centre_of_mass_radius = lever * libm::sinf(margin.least_tilt().min(core::f32::consts::FRAC_PI_2));
-    Ok(Firmness { margin, contacts })
+    Ok(margin)
 }
 
 /// Unit vector of a horizontal direction, by its index in [`Margin::tilts`].

@@ -32,6 +32,8 @@ impl Patch {
     pub(super) const WIRE: u32 = 1 << 4;
     /// Bit of [`ends`](Self::ends) that marks a patch of surface that was not seen but guessed.
     pub(super) const GUESSED: u32 = 1 << 5;
+    /// Bit of [`ends`](Self::ends) that marks a patch on which nothing shall hang.
+    pub(super) const EXCLUDED: u32 = 1 << 6;
 
     /// Curvatures along and across, on the sides of an offset, 1/m.
     pub(super) fn curvatures_towards(&self, [x, y]: [f32; 2]) -> [f32; 2] {

@@ -94,6 +94,15 @@ impl<'a> Support<'a> {
         self.representatives.iter().map(move |&index| points[index as usize])
     }
 
+    /// Positions and unit normals of the patches on which something may hang, supporter coordinates, metres.
+    pub(crate) fn hangable_surface(&self) -> impl Iterator<Item = (&'a Point, &'a Vector)> {
+        let (points, patches) = (self.tree.points(), self.patches.iter());
+        let surface = self.representatives.iter().map(move |&index| &points[index as usize]).zip(patches);
+        surface
+            .filter(|(_, patch)| patch.ends & Patch::EXCLUDED == 0)
+            .map(|(point, patch)| (point, &patch.normal))
+    }
+
     /// Indices of the patches at a range of points of the tree.
     pub(crate) fn patches_of(&self, points: &Range<usize>) -> Range<usize> {
         let before = |limit: usize| self.representatives.partition_point(|&index| (index as usize) < limit);
@@ -114,10 +123,11 @@ impl<'a> Support<'a> {
 
     /// Chooses representatives and fits their patches. Every other point has a representative within
     /// [`REPRESENTATIVE_SPACING`] whose normal is similar. `normals`, `spacings`, the distance between points around
-    /// each, metres, and `is_guessed`, 1 for points that nobody saw, are in tree order.
+    /// each, metres, `is_guessed`, 1 for points that nobody saw, and `is_excluded`, 1 for points on which nothing shall hang, are in
+    /// tree order.
     pub(crate) fn fit(
         tree: PointTree<'a>,
-        (normals, spacings, is_guessed): (&[Vector], &[f32], &[u8]),
+        (normals, spacings, is_guessed, is_excluded): (&[Vector], &[f32], &[u8], &[u8]),
         room: Room<'a>,
         mut scratch: Arena,
     ) -> Result<Self, OutOfMemory> {
@@ -138,6 +148,7 @@ impl<'a> Support<'a> {
             let spacing = spacing_around(&tree, spacings, index, overall);
             patches[count] = fit_patch(&tree, normals, index, spacing.max(REPRESENTATIVE_SPACING), spacing);
             patches[count].ends |= if is_guessed[index] > 0 { Patch::GUESSED } else { 0 };
+            patches[count].ends |= if is_excluded[index] > 0 { Patch::EXCLUDED } else { 0 };
             representatives[count] = index as u32;
             count += 1;
         }

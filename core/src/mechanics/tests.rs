@@ -63,8 +63,13 @@ impl Scene {
         let room = Room::new(count, &mut arena).unwrap();
         let mut spacings = vec![0.0; count];
         spacing::measure(&tree, &mut spacings);
-        let support =
-            Support::fit(tree, (&normals, &spacings, &vec![0; count]), room, arena.scratch()).unwrap();
+        let support = Support::fit(
+            tree,
+            (&normals, &spacings, &vec![0; count], &vec![0; count]),
+            room,
+            arena.scratch(),
+        )
+        .unwrap();
         let centre = mass.volume_centroid.expect("the test shapes are closed");
         let reach = mesh.vertices().iter().map(|v| (Point::from(*v) - centre).norm()).fold(0.0, f32::max);
         let body = Body {
@@ -139,10 +144,17 @@ impl Lab<'_> {
         end.centre - pose * self.body.centre
     }
 
-    fn firmness(&mut self, rest: &Pose) -> margin::Firmness {
+    fn contacts(&mut self, rest: &Pose) -> Vec<margin::Contact> {
         let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
-        firmness(scene, rest, &DOWN, &Params::default(), 0.0, &mut self.sleeps, &mut Meter::new(&monitor))
-            .unwrap()
+        let (params, mut meter) = (Params::default(), Meter::new(&monitor));
+        carrying_contacts(scene, rest, &DOWN, &params, &mut self.sleeps, &mut meter).unwrap().to_vec()
+    }
+
+    fn margin(&mut self, rest: &Pose) -> Margin {
+        let contacts = self.contacts(rest);
+        let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
+        let (at, params, mut meter) = ((rest, &contacts[..]), Params::default(), Meter::new(&monitor));
+        margin(scene, at, &DOWN, &params, 0.0, &mut self.sleeps, &mut meter).unwrap()
     }
 
     fn is_clear(&self, pose: &Pose, clearance: f32) -> bool {
@@ -209,7 +221,7 @@ fn a_ring_hangs_straight_below_the_rod() {
         let centre = rest * Point::origin();
         assert!(centre.x.hypot(centre.y) < 0.02, "{centre}");
         assert!((centre.z + hang(0.005)).abs() < 0.0005, "{centre}");
-        let contacts = lab.firmness(&rest).contacts;
+        let contacts = lab.contacts(&rest);
         let borne: f32 = contacts.iter().map(|contact| contact.force).sum();
         let bears: f32 =
             contacts.iter().map(|contact| contact.force * contact.position.y).sum::<f32>() / borne;
@@ -666,7 +678,7 @@ fn a_body_without_contact_falls() {
 
 /// Tilts of gravity that the rest pose survives, degrees.
 fn tilts(lab: &mut Lab, rest: &Pose) -> [f32; DIRECTIONS] {
-    lab.firmness(rest).margin.tilts.map(f32::to_degrees)
+    lab.margin(rest).tilts.map(f32::to_degrees)
 }
 
 #[test]
@@ -709,7 +721,7 @@ fn the_tilts_turn_with_the_scene() {
 fn contacts_bear_the_weight() {
     Scene::new(ring(), rod(Vector::x(), 0.1, 0.005)).try_out(|lab| {
         let rest = lab.rest(&on_rod(), FRICTION);
-        let contacts = lab.firmness(&rest).contacts;
+        let contacts = lab.contacts(&rest);
         let push: Vector = contacts.iter().map(|contact| contact.normal * contact.force).sum();
         assert!((push.z - 1.0).abs() < 0.05, "{contacts:?}");
         for contact in &contacts {
@@ -732,12 +744,12 @@ fn a_deep_hook_is_firmer_than_a_shallow_one() {
     // All from the same rest pose, so that the distances to the ends are equal.
     let mut rest = on_rod();
     hook(0.0).try_out(|lab| rest = lab.rest(&on_rod(), FRICTION));
-    let firmness = |lip: f32| {
+    let margin = |lip: f32| {
         let mut margin = Margin::default();
-        hook(lip).try_out(|lab| margin = lab.firmness(&rest).margin);
+        hook(lip).try_out(|lab| margin = lab.margin(&rest));
         margin
     };
-    let (none, shallow, low, deep) = (firmness(0.0), firmness(0.0005), firmness(0.0012), firmness(0.006));
+    let (none, shallow, low, deep) = (margin(0.0), margin(0.0005), margin(0.0012), margin(0.006));
     let margins = [none, shallow, low, deep];
     for k in [0, 4] {
         assert!(none.tilts[k] < low.tilts[k] && low.tilts[k] < deep.tilts[k], "{margins:?}");
@@ -759,7 +771,7 @@ fn a_jolt_shakes_off_what_hangs_close_to_the_end() {
     Scene::new(ring(), rod(Vector::x(), 1.0, 0.005)).try_out(|lab| {
         let mut margin_at = |x: f32| {
             let rest = lab.rest(&(Pose::translation(x, 0.0, 0.0) * on_rod()), FRICTION);
-            lab.firmness(&rest).margin
+            lab.margin(&rest)
         };
         let (middle, close) = (margin_at(0.0), margin_at(0.492));
         assert_eq!(middle.jolt_time, Margin::MOST_JOLT_TIME, "{middle:?}");

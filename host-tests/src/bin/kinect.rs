@@ -5,7 +5,7 @@ use clap::Parser;
 use hangpose::files::depth::{ScanFrame, ScanSources, read_scan};
 use hangpose::files::{CloudFile, ply_bytes};
 use hangpose::geometry::{Aabb, Point, Pose, Vector};
-use hangpose::hanging::HangingPose;
+use hangpose::hanging::{HangingPose, Request};
 use hangpose::perception::depth::DepthImage;
 use hangpose::perception::depth_points::{DepthPoints, DepthPointsSettings};
 use hangpose::perception::volume::VolumeSettings;
@@ -165,7 +165,7 @@ fn predict(case: &Case, seen: &Seen) -> Result<Outcome> {
     };
     let supporter = analyze_supporter(&cloud, &params, &mut for_supporter, &monitor)?;
     let mut poses = [HangingPose::default()];
-    let found = predict_poses(&object, &supporter, &params, &mut poses, &monitor)?;
+    let found = predict_poses(&object, &supporter, &Request::ANY, &params, &mut poses, &monitor)?;
     let Some(best) = found.poses.first() else { return Ok(Outcome::NotFound) };
     let verdict = Bullet::default().judge(&Scene::new(&case.object, &case.supporter), &best.pose);
     Ok(match (verdict.clear, verdict.success()) {

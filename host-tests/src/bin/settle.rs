@@ -3,7 +3,7 @@
 
 use anyhow::Result;
 use clap::Parser;
-use hangpose::hanging::{HangingPose, let_go, predict_bytes};
+use hangpose::hanging::{HangingPose, Request, let_go, predict_bytes};
 use hangpose::mechanics::Fate;
 use hangpose::memory::Limits;
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses};
@@ -100,8 +100,8 @@ fn judge(case: &Case, count: usize) -> Vec<Said> {
         analyze_supporter(&cloud, &params, &mut supporter_memory, &monitor).expect("memory is enough");
     let mut poses = vec![HangingPose::default(); 1000];
     let candidates = Params { settle: false, ..params.clone() };
-    let found =
-        predict_poses(&object, &supporter, &candidates, &mut poses, &monitor).expect("params are valid");
+    let found = predict_poses(&object, &supporter, &Request::ANY, &candidates, &mut poses, &monitor)
+        .expect("params are valid");
     let limits = Limits::of_points(cloud.points().len());
     let mut memory = vec![0; predict_bytes(&limits)];
     let mut random = Random::named(&case.name, 1);

@@ -3,6 +3,7 @@
 use super::loss::Loss;
 use crate::judge::Verdict;
 use hangpose::hanging::Rest;
+use hangpose::mechanics::Kind;
 use serde::{Deserialize, Serialize};
 
 /// Outcome of one pair under one profile.
@@ -64,6 +65,10 @@ pub struct Outcome {
 /// Statements of the predictor about a pose.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Said {
+    /// How the object hangs.
+    pub kind: Kind,
+    /// Error of the position at release that is tolerated, m, and of the rotation, rad.
+    pub tolerance: [f32; 2],
     /// Probability that the object hangs.
     pub probability: f32,
     /// Tolerated tilt in each direction, rad.
@@ -91,6 +96,8 @@ pub struct Said {
 impl From<&Rest> for Said {
     fn from(rest: &Rest) -> Self {
         Self {
+            kind: rest.kind,
+            tolerance: [rest.tolerance.position, rest.tolerance.rotation],
             probability: rest.probability,
             tilts: rest.margin.tilts,
             jolt_time: rest.margin.jolt_time,

@@ -9,7 +9,7 @@ use super::seen::Seen;
 use crate::gallery;
 use crate::judge::{Bullet, Judge, Limits, Ode, Scene, World};
 use crate::scan::Spec;
-use hangpose::hanging::HangingPose;
+use hangpose::hanging::{HangingPose, Request};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses};
 use std::collections::{HashMap, HashSet};
 use std::io::{BufRead, Write};
@@ -154,8 +154,8 @@ fn judge(case: &Case, profile: &str, params: &Params, scan: &Option<Spec>, optio
     let supporter =
         analyze_supporter(&cloud, &params, &mut supporter_memory, &monitor).expect("memory is enough");
     let mut poses = [HangingPose::default(); TOP];
-    let prediction =
-        predict_poses(&object, &supporter, &params, &mut poses, &monitor).expect("the profile is valid");
+    let prediction = predict_poses(&object, &supporter, &Request::ANY, &params, &mut poses, &monitor)
+        .expect("the profile is valid");
     let seconds = start.elapsed().as_secs_f64();
 
     // For a pair that cannot hang only the rejection counts, unless all poses are judged.

@@ -49,6 +49,11 @@ struct SettlingCounts {
     unseen: usize,
     probable: usize,
     firm: usize,
+    firm_as_preferred: usize,
+    in_scene: usize,
+    outside: usize,
+    other_kind: usize,
+    no_approach: usize,
 }
 
 impl From<&hanging::Counts> for Counts {
@@ -73,6 +78,11 @@ impl From<&hanging::Counts> for Counts {
             unseen,
             probable,
             firm,
+            firm_as_preferred,
+            in_scene,
+            outside,
+            other_kind,
+            no_approach,
         } = counts.settling;
         let settling = SettlingCounts {
             candidates: candidates.made,
@@ -86,6 +96,11 @@ impl From<&hanging::Counts> for Counts {
             unseen,
             probable,
             firm,
+            firm_as_preferred,
+            in_scene,
+            outside,
+            other_kind,
+            no_approach,
         };
         Self { hangability, supportability, matching, settling }
     }

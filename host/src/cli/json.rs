@@ -5,8 +5,8 @@ use hangpose::Params;
 use hangpose::geometry::MassProperties;
 use hangpose::hanging::contacts::{ObjectContact, SupportContact};
 use hangpose::hanging::sites::{Cost, HangingSite, SupportSite};
-use hangpose::hanging::{HangingPose, Rejection, Stage};
-use hangpose::mechanics::{Contact, Margin, Unseen};
+use hangpose::hanging::{HangingPose, Rejection, Stage, Tolerance};
+use hangpose::mechanics::{Contact, Kind, Margin, Unseen};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -33,6 +33,8 @@ pub(super) struct Pose<'a> {
     release_pose: [f32; 16],
     /// Pose in which the object comes to rest; null, like the fields up to `contacts`, without simulation.
     rest_pose: Option<[f32; 16]>,
+    kind: Option<Kind>,
+    tolerance: Option<Tolerance>,
     sinking: Option<f32>,
     clearance: Option<f32>,
     probability: Option<f32>,
@@ -152,6 +154,8 @@ impl<'a> Pose<'a> {
             pose: matrix(&pose.pose),
             release_pose: matrix(&pose.pose),
             rest_pose: rest.map(|rest| matrix(&rest.pose)),
+            kind: rest.map(|rest| rest.kind),
+            tolerance: rest.map(|rest| rest.tolerance),
             sinking: rest.map(|rest| rest.sinking),
             clearance: rest.map(|rest| rest.clearance),
             probability: rest.map(|rest| rest.probability),

@@ -11,7 +11,7 @@ use anyhow::{Context, Result};
 use hangpose::files::{self, CloudFile, MeshFile, SupporterFile};
 use hangpose::geometry::{Aabb, Cloud, Mesh, Point};
 use hangpose::hanging::sites::{Cost, SiteMatch};
-use hangpose::hanging::{self, HangingPose, Object, Rest, Stage, Supporter, predict, predict_bytes};
+use hangpose::hanging::{self, HangingPose, Object, Request, Rest, Stage, Supporter, predict, predict_bytes};
 use hangpose::mechanics::Unseen;
 use hangpose::memory::Limits;
 use hangpose::{CentreOfMass, Monitor};
@@ -74,8 +74,17 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
             (analyse_object(), analyse_supporter())
         };
         let (object, supporter) = ((object.0?, object.1), (supporter.0?, supporter.1));
-        let (prediction, matching) =
-            timed(|| predict(&object.0, &supporter.0, params, &mut poses, prediction_memory, monitors[2]));
+        let (prediction, matching) = timed(|| {
+            predict(
+                &object.0,
+                &supporter.0,
+                &Request::ANY,
+                params,
+                &mut poses,
+                prediction_memory,
+                monitors[2],
+            )
+        });
         (seconds.object, seconds.supporter, seconds.matching) = (object.1, supporter.1, matching);
         Ok((object.0, supporter.0, prediction?))
     })?;
@@ -294,7 +303,8 @@ fn in_words(rest: &Rest) -> String {
     });
     let guess = view_that_would_help(&rest.unseen).unwrap_or_default();
     format!(
-        "hangs with probability {:.0} %, tolerates a tilt of {at_least}{tilt:.0} degrees or a knock of {:.1} m/s, sinks {:.1} mm after release{at}{guess}",
+        "{}: hangs with probability {:.0} %, tolerates a tilt of {at_least}{tilt:.0} degrees or a knock of {:.1} m/s, sinks {:.1} mm after release{at}{guess}",
+        rest.kind,
         100.0 * rest.probability,
         margin.knock_speed,
         1000.0 * rest.sinking,

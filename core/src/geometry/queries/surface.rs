@@ -77,6 +77,10 @@ impl<'m> Surface<'m> {
         self.triangles
     }
 
+    pub(crate) fn bvh(&self) -> &Bvh<'m> {
+        &self.bvh
+    }
+
     /// -1 where the triangles' normals point into the solid, 1 otherwise.
     pub(crate) fn orientation(&self) -> f32 {
         self.orientation

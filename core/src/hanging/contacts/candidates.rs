@@ -6,6 +6,7 @@ use super::counts::CandidateCounts;
 use super::object_contact::ObjectContact;
 use super::support_contact::SupportContact;
 use crate::geometry::{Point, Pose, Vector, any_perpendicular, unit_or};
+use crate::hanging::region::Region;
 use crate::hanging::settling::CLEARANCE;
 use crate::mechanics::{Body, Support, first_within};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
@@ -77,9 +78,11 @@ impl<'a> CandidateSearch<'a> {
         array_bytes::<Place>(MAX_SUPPORT_CONTACTS).saturating_add(array_bytes::<Way>(2 * MAX_OBJECT_CONTACTS))
     }
 
+    /// Lays the contacts that are in the region `by` of the object on `supports`.
     pub(super) fn new(
         scene: (&'a Body<'a>, &'a Support<'a>),
         contacts: &'a [ObjectContact],
+        by: &Region,
         supports: &[SupportContact],
         up: Vector,
         arena: &mut Arena<'a>,
@@ -90,7 +93,11 @@ impl<'a> CandidateSearch<'a> {
         }
         let ways = arena.slice::<Way>(2 * contacts.len())?;
         for (k, way) in ways.iter_mut().enumerate() {
-            let ObjectContact { capture, passage, .. } = contacts[k / 2];
+            let ObjectContact { capture, passage, position, .. } = contacts[k / 2];
+            if !by.contains(&position) {
+                way.score = f32::NEG_INFINITY;
+                continue;
+            }
             way.score = libm::logf(capture.max(MIN_CAPTURE) / MIN_CAPTURE)
                 + if is_along(k) { ALONG_BONUS } else { 0.0 }
                 - if passage < BAR_LENGTH { ENCLOSED_PENALTY } else { 0.0 };

@@ -18,7 +18,7 @@ mod support_contact;
 
 pub use counts::{CandidateCounts, Counts, ObjectCounts, SupporterCounts};
 pub use object_contact::ObjectContact;
-pub(super) use search::search;
+pub(super) use search::{search, search_bytes};
 pub use support_contact::SupportContact;
 
 use super::samples::{ObjectSamples, SupporterCloud};
@@ -70,9 +70,4 @@ pub(super) fn find_on_supporter(
     let up = cloud.params.up();
     let SupporterCloud { tree, normals, is_excluded, .. } = *cloud;
     support_contact::Search { tree, normals, is_excluded, up }.find(slots, meter)
-}
-
-/// Bytes of working memory for [`search`], beside that for settling.
-pub(super) const fn search_bytes() -> usize {
-    candidates::CandidateSearch::bytes()
 }

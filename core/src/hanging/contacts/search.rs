@@ -1,18 +1,23 @@
 //! Releases candidates, the most promising first, until enough of them hang.
 
 use super::candidates::CandidateSearch;
-use super::constants::{ATTEMPT_DIVISOR, REST_SHARE};
+use super::constants::{ATTEMPT_DIVISOR, MAX_SUPPORT_CONTACTS, REST_SHARE};
 use super::counts::Counts;
 use super::object_contact::ObjectContact;
-use super::support_contact::SupportContact;
+use super::support_contact::{self, SupportContact};
 use crate::best::Best;
 use crate::hanging::error::PredictError;
 use crate::hanging::found::Found;
 use crate::hanging::pose::HangingPose;
 use crate::hanging::scene::Scene;
 use crate::hanging::settling::Settling;
-use crate::memory::Arena;
+use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop};
+
+/// Bytes of working memory for [`search`], beside that for settling.
+pub(in crate::hanging) const fn search_bytes() -> usize {
+    CandidateSearch::bytes().saturating_add(array_bytes::<SupportContact>(MAX_SUPPORT_CONTACTS))
+}
 
 /// Writes the best poses to `poses`: with [`Params::settle`](crate::Params::settle) those that stay when released,
 /// otherwise the candidates as they are made.
@@ -27,8 +32,22 @@ pub(in crate::hanging) fn search(
     // Moved, so that its memory is borrowed for no longer than the scene.
     let mut arena = arena;
     let mut settling = Settling::new(scene, &mut arena)?;
-    let (bodies, up) = ((settling.body, settling.support), scene.params.up());
-    let mut candidates = CandidateSearch::new(bodies, contacts, places, up, &mut arena)?;
+    let (bodies, up, request) = ((settling.body, settling.support), scene.params.up(), scene.request);
+    let stopped = |stop| Found { poses: 0, counts, settling: Default::default(), stop: Some(stop) };
+    let places = match request.on.is_limited() {
+        false => places,
+        true => {
+            let slots = arena.slice::<SupportContact>(MAX_SUPPORT_CONTACTS)?;
+            match support_contact::find_within(bodies.1, &request.on, &up, slots, meter) {
+                Ok(count) => &slots[..count],
+                Err(stop) => return Ok(stopped(stop)),
+            }
+        }
+    };
+    let is_there =
+        !places.is_empty() && contacts.iter().any(|contact| request.by.contains(&contact.position));
+    settling.counts.outside += usize::from(!is_there);
+    let mut candidates = CandidateSearch::new(bodies, contacts, &request.by, places, up, &mut arena)?;
     let mut best = Best::new(poses);
     let searched = match scene.params.settle {
         true => release(&mut candidates, &mut settling, &mut best, meter),
@@ -54,7 +73,7 @@ fn list(
     Ok(())
 }
 
-/// Releases candidates until enough of them hang firmly, or the attempts are used up.
+/// Releases candidates until enough of them hang firmly in the way that is asked for, or the attempts are used up.
 fn release(
     candidates: &mut CandidateSearch,
     settling: &mut Settling,
@@ -68,7 +87,7 @@ fn release(
         let pose = HangingPose { pose: candidate.pose, ..HangingPose::default() };
         let stays = settling.release(&pose, poses, meter)?;
         candidates.discount(&candidate, if stays { REST_SHARE } else { 1.0 });
-        let has_enough = settling.counts.firm >= firm_enough;
+        let has_enough = settling.counts.firm_as_preferred >= firm_enough;
         if has_enough || settling.counts.probable > 0 && ATTEMPT_DIVISOR * (attempt + 1) >= attempts {
             break;
         }

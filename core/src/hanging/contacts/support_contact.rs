@@ -2,7 +2,9 @@
 
 use super::constants::*;
 use super::counts::SupporterCounts;
-use crate::geometry::{Point, PointTree, Vector};
+use crate::geometry::{Point, PointTree, Vector, principal_direction};
+use crate::hanging::region::Region;
+use crate::mechanics::Support;
 use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
 
@@ -38,20 +40,10 @@ impl Search<'_> {
     ) -> (SupporterCounts, Option<Stop>) {
         let [.., least] = MIN_SUPPORT_COSINES;
         let contact_points = self.facing_up(least).count();
-        let mut apart = SUPPORT_SPACING;
-        let contacts = loop {
-            match self.spread(apart, slots) {
-                Some(count) => break count,
-                None => apart *= SPACING_GROWTH,
-            }
-        };
-        if let Err(stop) = meter.distance_queries(contacts) {
-            return (SupporterCounts { contact_points, contacts: 0 }, Some(stop));
+        match spread(self.tree, |least| self.facing_up(least), slots, meter) {
+            Ok(contacts) => (SupporterCounts { contact_points, contacts }, None),
+            Err(stop) => (SupporterCounts { contact_points, contacts: 0 }, Some(stop)),
         }
-        for slot in &mut slots[..contacts] {
-            slot.bar_direction = bar_direction(self.tree, slot.position);
-        }
-        (SupporterCounts { contact_points, contacts }, None)
     }
 
     /// Points that are not excluded, with their normals, whose normal has at least this cosine with up.
@@ -62,46 +54,63 @@ impl Search<'_> {
             .filter(move |((_, normal), excluded)| **excluded == 0 && faces_up(normal))
             .map(|(point, _)| point)
     }
-
-    /// Fills `slots` with contacts at least this far apart, and returns their number; `None` if there are more than
-    /// `slots`.
-    fn spread(&self, apart: f32, slots: &mut [SupportContact]) -> Option<usize> {
-        let mut count = 0;
-        for least in MIN_SUPPORT_COSINES {
-            for (point, normal) in self.facing_up(least) {
-                let is_near =
-                    |other: &SupportContact| (other.position - point).norm_squared() < apart * apart;
-                if slots[..count].iter().any(is_near) {
-                    continue;
-                }
-                let slot = slots.get_mut(count)?;
-                *slot = SupportContact { position: *point, normal: *normal, bar_direction: Vector::zeros() };
-                count += 1;
-            }
-        }
-        Some(count)
-    }
 }
 
-/// The direction of greatest spread of the points around.
-fn bar_direction(tree: &PointTree, position: Point) -> Vector {
-    let (mut count, mut sum, mut squares) = (0.0, Vector::zeros(), nalgebra::Matrix3::<f32>::zeros());
-    tree.for_each_within(&position, BAR_RADIUS, |n| {
-        let offset = tree.points()[n.index as usize] - position;
-        count += 1.0;
-        sum += offset;
-        squares += offset * offset.transpose();
-    });
-    let spread = squares / count - (sum / count) * (sum / count).transpose();
-    // Power iteration. Twenty rounds suffice for a direction that only orders candidates.
-    let mut direction = Vector::new(1.0, 0.83, 0.61).normalize();
-    for _ in 0..20 {
-        let next = spread * direction;
-        let norm = next.norm();
-        if norm <= 0.0 {
-            break;
+/// Fills `slots` with contacts of a supporter in a region, closer together than those of the whole supporter, and returns their
+/// number.
+pub(super) fn find_within(
+    support: &Support,
+    region: &Region,
+    up: &Vector,
+    slots: &mut [SupportContact],
+    meter: &mut Meter,
+) -> Result<usize, Stop> {
+    let facing_up = |least| {
+        let surface = support.hangable_surface();
+        surface.filter(move |(point, normal)| normal.dot(up) >= least && region.contains(point))
+    };
+    spread(&support.tree, facing_up, slots, meter)
+}
+
+/// Fills `slots` with contacts as close together as they have room for, and returns their number. `facing_up` gives the points
+/// with their normals whose normal has at least a cosine with up.
+fn spread<'a, P: Iterator<Item = (&'a Point, &'a Vector)>>(
+    tree: &PointTree,
+    facing_up: impl Fn(f32) -> P,
+    slots: &mut [SupportContact],
+    meter: &mut Meter,
+) -> Result<usize, Stop> {
+    let mut apart = SUPPORT_SPACING;
+    let count = loop {
+        match spread_apart(apart, &facing_up, slots) {
+            Some(count) => break count,
+            None => apart *= SPACING_GROWTH,
         }
-        direction = next / norm;
+    };
+    meter.distance_queries(count)?;
+    for slot in &mut slots[..count] {
+        slot.bar_direction = principal_direction(tree, &slot.position, BAR_RADIUS);
     }
-    direction
+    Ok(count)
+}
+
+/// Fills `slots` with contacts at least this far apart, and returns their number; `None` if there are more than `slots`.
+fn spread_apart<'a, P: Iterator<Item = (&'a Point, &'a Vector)>>(
+    apart: f32,
+    facing_up: &impl Fn(f32) -> P,
+    slots: &mut [SupportContact],
+) -> Option<usize> {
+    let mut count = 0;
+    for least in MIN_SUPPORT_COSINES {
+        for (point, normal) in facing_up(least) {
+            let is_near = |other: &SupportContact| (other.position - point).norm_squared() < apart * apart;
+            if slots[..count].iter().any(is_near) {
+                continue;
+            }
+            let slot = slots.get_mut(count)?;
+            *slot = SupportContact { position: *point, normal: *normal, bar_direction: Vector::zeros() };
+            count += 1;
+        }
+    }
+    Some(count)
 }

@@ -2,17 +2,20 @@
 
 mod probability;
 pub(super) mod rest;
+mod tolerance;
+mod wishes;
 
-pub use rest::Rest;
+pub use rest::{Rest, Tolerance};
 
 use super::error::PredictError;
 use super::pose::HangingPose;
+use super::request::{Distance, Request};
 use super::scene::Scene;
 use crate::best::Best;
 use crate::geometry::Pose;
 use crate::mechanics::{
-    Body, Fate, Settings, Settled, Sleep, Support, Unseen, comes_free, firmness, is_off_surface,
-    release_pose, settle, unseen,
+    Body, Fate, Settings, Settled, Sleep, Support, Unseen, carrying_contacts, comes_free, is_off_surface,
+    kind_of, margin, release_pose, settle, unseen,
 };
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop};
@@ -41,12 +44,23 @@ pub struct SettlingCounts {
     pub probable: usize,
     /// Releases that came to rest in a pose with a probability of 97.5 % or more.
     pub firm: usize,
+    /// Those of them that hang in a way that is preferred ([`Request::prefer`]).
+    pub firm_as_preferred: usize,
+    /// Poses that touch the scene or an object that hangs already.
+    pub in_scene: usize,
+    /// Poses at rest that hang on or by another region than was asked for, and 1 if the regions have no place for any.
+    pub outside: usize,
+    /// Poses at rest that hang in a way that is not allowed.
+    pub other_kind: usize,
+    /// Poses that would stay, but have no way in the direction that was asked for.
+    pub no_approach: usize,
 }
 
 /// Releases poses, one at a time.
 pub(super) struct Settling<'a> {
     pub(super) body: &'a Body<'a>,
     pub(super) support: &'a Support<'a>,
+    pub(super) request: &'a Request<'a>,
     pub(super) params: &'a Params,
     /// Working memory, of [`Support::sleepers`].
     pub(super) sleeps: &'a mut [Sleep],
@@ -65,6 +79,9 @@ const MIN_RELEASE_GAP: f32 = 0.0001;
 /// Largest distance by which the centre of mass may sink from the release pose to the rest pose, metres. Farther down
 /// it is another place than the one that was chosen.
 const MAX_RELEASE_SINKING: f32 = 0.01;
+
+/// Distance below which two rest poses are the same: a robot's accuracy.
+const SAME: Distance = Distance { position: 0.005, rotation: 0.1 };
 
 // Budget.
 
@@ -86,10 +103,10 @@ struct Release {
 impl<'a> Settling<'a> {
     /// Takes working memory, of [`bytes`](Self::bytes), from `arena`.
     pub(super) fn new(scene: &Scene<'a>, arena: &mut Arena<'a>) -> Result<Self, PredictError> {
-        let Scene { support, params, .. } = *scene;
+        let Scene { support, request, params, .. } = *scene;
         let body = scene.body.ok_or(PredictError::NoDistanceField)?;
         let sleeps = arena.slice::<Sleep>(Support::sleepers(support.patches.len()))?;
-        Ok(Self { body, support, params, sleeps, counts: SettlingCounts::default() })
+        Ok(Self { body, support, request, params, sleeps, counts: SettlingCounts::default() })
     }
 
     /// Bytes of working memory, for a supporter of `points`, whose far side has patches as well.
@@ -129,6 +146,10 @@ impl<'a> Settling<'a> {
         if !is_off_surface(scene, &start.pose, CLEARANCE, meter)? {
             return Ok(false);
         }
+        if !self.is_clear_of_scene(&start.pose, CLEARANCE, meter)? {
+            self.counts.in_scene += 1;
+            return Ok(false);
+        }
         self.counts.released += 1;
         let settled = self.settle(&start.pose, meter)?;
         match settled.fate {
@@ -141,38 +162,78 @@ impl<'a> Settling<'a> {
             return Ok(false);
         }
         if let Some(known) = self.known(&settled.pose, poses) {
-            self.counts.firm += usize::from(known.is_firm());
+            self.count_firm(&known);
             return Ok(true);
         }
         let Some((Release { pose, gap, sinking }, settled)) = self.find_release(settled, meter)? else {
             return Ok(false);
         };
         let (down, params) = (-self.params.up(), self.params);
+        let contacts = carrying_contacts(scene, &settled.pose, &down, params, self.sleeps, meter)?;
+        let kind = kind_of(scene, &settled.pose, &contacts, &-down, meter)?;
+        if !self.is_as_asked((&settled.pose, &pose), &contacts, kind, meter)? {
+            return Ok(true);
+        }
         if !comes_free(scene, &settled.pose, &down, Settings::damped(params), self.sleeps, meter)? {
             self.counts.wedged += 1;
             return Ok(false);
         }
         // A pose that cannot beat the last one of a full list need not be tilted in every direction.
-        let last = poses.next_to_go().and_then(|pose| pose.rest).map_or(0.0, |rest| rest.probability);
+        let last = poses.next_to_go().map_or(0.0, |pose| self.merit(pose)) / self.request.weight(kind);
         let unseen = unseen(scene, &pose, meter)?;
         let least = probability::least_tilt(last, gap, &unseen).max(MIN_USEFUL_TILT);
-        let firm = firmness(scene, &settled.pose, &down, params, least, self.sleeps, meter)?;
-        let rest = Rest::new(settled.pose, (sinking, gap), unseen, &firm);
+        let at = (&settled.pose, &contacts[..]);
+        let margin = margin(scene, at, &down, params, least, self.sleeps, meter)?;
+        let tolerance = tolerance::of(self.body, &settled.pose, gap, &margin, &contacts);
+        let rest = Rest::new(settled.pose, kind, (sinking, gap), tolerance, unseen, margin, &contacts);
         let least = self.params.min_probability;
-        if rest.probability < least && probability::of(&firm.margin, gap, &Unseen::default()) >= least {
+        if rest.probability < least && probability::of(&margin, gap, &Unseen::default()) >= least {
             self.counts.unseen += 1;
         }
-        if rest.probability >= least && self.known(&rest.pose, poses).is_none() {
-            self.counts.probable += 1;
-            self.counts.firm += usize::from(rest.is_firm());
-            poses.offer(HangingPose { pose, rest: Some(rest), matched: start.matched }, is_more_probable);
+        if rest.probability < least || self.known(&rest.pose, poses).is_some() {
+            return Ok(true);
         }
+        if !self.has_approach(&pose, meter)? {
+            self.counts.no_approach += 1;
+            return Ok(true);
+        }
+        self.counts.probable += 1;
+        self.count_firm(&rest);
+        self.offer(HangingPose { pose, rest: Some(rest), matched: start.matched }, poses);
         Ok(true)
+    }
+
+    /// Offers a pose, unless one that is hardly different is as good.
+    fn offer(&self, pose: HangingPose, poses: &mut Best<HangingPose>) {
+        let is_alike = |other: &HangingPose| match (&pose.rest, &other.rest) {
+            (Some(rest), Some(other)) => {
+                rest.kind == other.kind
+                    && rest.is_like(&other.pose, &self.body.centre, &self.request.distinct)
+            }
+            _ => false,
+        };
+        let is_better = |a: &HangingPose, b: &HangingPose| self.merit(a) > self.merit(b);
+        if poses.iter().any(|other| is_alike(other) && !is_better(&pose, other)) {
+            return;
+        }
+        poses.drop_where(is_alike);
+        poses.offer(pose, is_better);
+    }
+
+    /// What a pose is ranked by: its probability, and how much its kind is wanted.
+    fn merit(&self, pose: &HangingPose) -> f32 {
+        pose.rest.map_or(0.0, |rest| rest.probability * self.request.weight(rest.kind))
+    }
+
+    fn count_firm(&mut self, rest: &Rest) {
+        let is_preferred = self.request.prefer.contains(rest.kind);
+        self.counts.firm += usize::from(rest.is_firm());
+        self.counts.firm_as_preferred += usize::from(rest.is_firm() && is_preferred);
     }
 
     /// The rest pose among `poses` that equals `pose` to within a robot's accuracy.
     fn known(&self, pose: &Pose, poses: &Best<HangingPose>) -> Option<Rest> {
-        poses.iter().filter_map(|other| other.rest).find(|rest| rest.is_like(pose, &self.body.centre))
+        poses.iter().filter_map(|other| other.rest).find(|rest| rest.is_like(pose, &self.body.centre, &SAME))
     }
 
     fn settle(&mut self, start: &Pose, meter: &mut Meter) -> Result<Settled, Stop> {
@@ -207,10 +268,4 @@ impl<'a> Settling<'a> {
         }
         Ok(None)
     }
-}
-
-/// The order of the ranking.
-fn is_more_probable(a: &HangingPose, b: &HangingPose) -> bool {
-    let probability = |pose: &HangingPose| pose.rest.map_or(0.0, |rest| rest.probability);
-    probability(a) > probability(b)
 }

@@ -2,18 +2,34 @@
 
 use super::probability;
 use crate::geometry::{Point, Pose};
-use crate::mechanics::{Contact, Firmness, MAX_CONTACTS, Margin, Unseen};
+use crate::hanging::request::Distance;
+use crate::mechanics::{Contact, Kind, MAX_CONTACTS, Margin, Unseen};
+
+/// How far the object may be from its release pose when it is let go, in any direction: it still touches nothing, and comes to
+/// rest as it would have. An error of the position and one of the rotation add up: half of either is fine together.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Tolerance {
+    /// Displacement, metres.
+    pub position: f32,
+    /// Rotation about the centre of mass, radians.
+    pub rotation: f32,
+}
 
 /// Where a released object comes to rest, and how firmly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
     /// Maps object coordinates to supporter coordinates; metres.
     pub pose: Pose,
+    /// How the object hangs.
+    pub kind: Kind,
     /// How far the centre of mass sinks from the release pose to the rest pose, metres.
     pub sinking: f32,
     /// Distance from the supporter at the release pose, metres: [`Params::clearance`](crate::Params::clearance), or
     /// less where there is no room.
     pub clearance: f32,
+    /// How far the object may be from the release pose when it is let go.
+    pub tolerance: Tolerance,
     /// The probability that the object hangs and stays, 0 to 1.
     pub probability: f32,
     /// How much of what matters at the release pose no camera has seen. The probability is lower by it.
@@ -27,16 +43,29 @@ pub struct Rest {
 impl Rest {
     pub(super) fn new(
         pose: Pose,
+        kind: Kind,
         (sinking, clearance): (f32, f32),
+        tolerance: Tolerance,
         unseen: Unseen,
-        firmness: &Firmness,
+        margin: Margin,
+        bearing: &[Contact],
     ) -> Self {
-        let Firmness { margin, contacts: bearing } = firmness;
         let mut contacts = [Contact::default(); MAX_CONTACTS];
         contacts[..bearing.len()].copy_from_slice(bearing);
-        let probability = probability::of(margin, clearance, &unseen);
+        let probability = probability::of(&margin, clearance, &unseen);
         let contact_count = bearing.len() as u32;
-        Self { pose, sinking, clearance, probability, unseen, margin: *margin, contacts, contact_count }
+        Self {
+            pose,
+            kind,
+            sinking,
+            clearance,
+            tolerance,
+            probability,
+            unseen,
+            margin,
+            contacts,
+            contact_count,
+        }
     }
 
     /// Whether nothing but what nobody saw keeps the pose from being certain.
@@ -49,10 +78,9 @@ impl Rest {
         &self.contacts[..self.contact_count as usize]
     }
 
-    /// Whether another pose equals this rest pose to within a robot's accuracy: 5 mm at the centre of mass, and 0.1
-    /// rad.
-    pub(super) fn is_like(&self, other: &Pose, centre: &Point) -> bool {
+    /// Whether another pose is closer to this rest pose than a distance; `centre` is the object's centre of mass.
+    pub(super) fn is_like(&self, other: &Pose, centre: &Point, distance: &Distance) -> bool {
         let apart = self.pose * centre - other * centre;
-        apart.norm() < 0.005 && self.pose.rotation.angle_to(&other.rotation) < 0.1
+        apart.norm() < distance.position && self.pose.rotation.angle_to(&other.rotation) < distance.rotation
     }
 }

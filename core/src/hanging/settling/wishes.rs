@@ -1,0 +1,109 @@
+//! Whether a pose is as the caller asked for.
+
+use super::{CLEARANCE, Settling};
+use crate::geometry::{Pose, Vector, any_perpendicular, rotate_about};
+use crate::hanging::request::Approach;
+use crate::mechanics::{Contact, Kind, first_within, is_clear_of_points, is_clear_of_surface};
+use crate::monitor::{Meter, Stop};
+use nalgebra::Translation3;
+
+/// Share of the weight that the contacts in a region must carry.
+const SHARE_IN_REGION: f32 = 0.5;
+/// Length of a step along an approach, metres: less than what a bar is thick.
+const APPROACH_STEP: f32 = 0.002;
+/// Directions tried on either of two circles in the cone of an approach, beside its axis.
+const AROUND: usize = 8;
+
+impl Settling<'_> {
+    /// Whether the object at `pose` is at least `clearance` metres away from the scene and from what hangs already.
+    pub(super) fn is_clear_of_scene(
+        &self,
+        pose: &Pose,
+        clearance: f32,
+        meter: &mut Meter,
+    ) -> Result<bool, Stop> {
+        for hung in self.request.hung {
+            let other = (hung.object.surface(), &hung.pose);
+            if !is_clear_of_surface(self.body, pose, other, clearance, meter)? {
+                return Ok(false);
+            }
+        }
+        is_clear_of_points(self.body, pose, self.request.scene, clearance, meter)
+    }
+
+    /// Whether the object hangs where and in the way that was asked for, at its rest pose and its release pose. Counts why not.
+    pub(super) fn is_as_asked(
+        &mut self,
+        (rest, release): (&Pose, &Pose),
+        contacts: &[Contact],
+        kind: Kind,
+        meter: &mut Meter,
+    ) -> Result<bool, Stop> {
+        if !self.hangs_in_region(rest, contacts) {
+            self.counts.outside += 1;
+        } else if !self.request.allow.contains(kind) {
+            self.counts.other_kind += 1;
+        } else if !self.is_clear_of_scene(rest, CLEARANCE, meter)?
+            || !self.is_clear_of_scene(release, CLEARANCE, meter)?
+        {
+            self.counts.in_scene += 1;
+        } else {
+            return Ok(true);
+        }
+        Ok(false)
+    }
+
+    /// Whether most of the weight rests in both regions.
+    fn hangs_in_region(&self, rest: &Pose, contacts: &[Contact]) -> bool {
+        let (request, to_object) = (self.request, rest.inverse());
+        if !request.on.is_limited() && !request.by.is_limited() {
+            return true;
+        }
+        let is_inside = |contact: &&Contact| {
+            request.on.contains(&contact.position) && request.by.contains(&(to_object * contact.position))
+        };
+        let weight =
+            |contacts: &mut dyn Iterator<Item = &Contact>| contacts.map(|contact| contact.force).sum::<f32>();
+        let inside = weight(&mut contacts.iter().filter(is_inside));
+        inside >= SHARE_IN_REGION * weight(&mut contacts.iter())
+    }
+
+    /// Whether a straight way in the direction that was asked for leads to the release pose without a collision.
+    pub(super) fn has_approach(&self, release: &Pose, meter: &mut Meter) -> Result<bool, Stop> {
+        let Some(Approach { direction, angle, length }) = self.request.approach else { return Ok(true) };
+        let axis = Vector::from(direction).normalize();
+        let first = any_perpendicular(axis);
+        let ways = core::iter::once(axis).chain([0.5 * angle, angle].into_iter().flat_map(|angle| {
+            let (sin, cos) = libm::sincosf(angle);
+            let turn = move |k: usize| core::f32::consts::TAU * k as f32 / AROUND as f32;
+            (0..AROUND).map(move |k| axis * cos + rotate_about(axis, turn(k), first) * sin)
+        }));
+        for way in ways {
+            if self.is_way_free(release, &way, length, meter)? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Whether the object collides with nothing while it moves along `way` for `length` metres to its release pose.
+    fn is_way_free(
+        &self,
+        release: &Pose,
+        way: &Vector,
+        length: f32,
+        meter: &mut Meter,
+    ) -> Result<bool, Stop> {
+        let steps = libm::ceilf(length / APPROACH_STEP) as usize;
+        for step in 1..=steps {
+            let back = way * -(length * step as f32 / steps as f32);
+            let pose = Translation3::from(back) * release;
+            let is_free = first_within((self.body, self.support), &pose, 0.0, meter)?.is_none()
+                && self.is_clear_of_scene(&pose, 0.0, meter)?;
+            if !is_free {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+}
