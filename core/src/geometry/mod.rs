@@ -21,4 +21,4 @@ pub use shapes::{Aabb, Cloud, CloudError, MAX_COUNT, MassProperties, Mesh, MeshE
 pub(crate) use shapes::{closest_point_on_triangle, scaled_normal};
 pub(crate) use statistics::{least_eigenvector, linked_cluster, mean_shift, principal_direction};
 pub use vector::{MAX_COORDINATE, Point, Pose, Vector};
-pub(crate) use vector::{any_perpendicular, rotate_about, unit_or};
+pub(crate) use vector::{any_perpendicular, fibonacci_direction, rotate_about, unit_or};

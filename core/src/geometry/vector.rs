@@ -28,3 +28,11 @@ pub(crate) fn rotate_about(axis: Vector, angle: f32, v: Vector) -> Vector {
     let (sin, cos) = libm::sincosf(angle);
     v * cos + axis.cross(&v) * sin
 }
+
+/// Point `index` of a Fibonacci lattice of `count` points, which are evenly spread on the unit sphere.
+pub(crate) fn fibonacci_direction(index: usize, count: usize) -> Vector {
+    let golden_angle = core::f32::consts::PI * (3.0 - libm::sqrtf(5.0));
+    let z = 1.0 - (2.0 * index as f32 + 1.0) / count as f32;
+    let (across, angle) = (libm::sqrtf(1.0 - z * z), golden_angle * index as f32);
+    Vector::new(across * libm::cosf(angle), across * libm::sinf(angle), z)
+}

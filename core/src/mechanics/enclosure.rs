@@ -1,7 +1,7 @@
 //! How the object encloses a point: all around in a plane, with a way out on both sides of it or on one.
 
 use super::Body;
-use crate::geometry::{Point, Vector, any_perpendicular, rotate_about};
+use crate::geometry::{Point, Vector, any_perpendicular, fibonacci_direction, rotate_about, unit_or};
 use crate::monitor::{Meter, Stop};
 
 /// How the object encloses a ball that lies in a plane.
@@ -18,9 +18,9 @@ pub(super) enum Enclosure {
 /// Straight ways out that are tried in a plane, evenly around.
 const WAYS: usize = 32;
 /// Ways out that are tried on either side of a plane.
-const SIDE_WAYS: usize = 24;
-/// Least cosine between these and the plane's normal. Flatter ones would leave a shallow cavity under its rim.
-const SIDE_COSINE: f32 = 0.5;
+const SIDE_WAYS: usize = 48;
+/// Least cosine between these and the plane's normal.
+const SIDE_COSINE: f32 = 0.1;
 /// Cells along each side of the grid on which crooked ways out are looked for. A larger number finds narrower ones, at more time.
 const CELLS: usize = 96;
 /// Most steps of a way. One step is at least half the ball's radius.
@@ -48,8 +48,8 @@ impl Enclosure {
         }
         for side in [*normal, -normal] {
             let mut is_closed = true;
-            for way in cone(&side) {
-                is_closed = is_closed && ball.is_stopped(&way, meter)?;
+            for way in (0..2 * SIDE_WAYS).map(|k| fibonacci_direction(k, 2 * SIDE_WAYS)) {
+                is_closed = is_closed && (way.dot(&side) < SIDE_COSINE || ball.is_stopped(&way, meter)?);
             }
             if is_closed {
                 return Ok(Self::Cavity);
@@ -59,14 +59,36 @@ impl Enclosure {
     }
 }
 
-/// Unit vectors within [`SIDE_COSINE`] of a unit vector, evenly spread.
-fn cone(axis: &Vector) -> impl Iterator<Item = Vector> {
-    let (axis, first) = (*axis, any_perpendicular(*axis));
-    let golden_angle = core::f32::consts::PI * (3.0 - libm::sqrtf(5.0));
-    (0..SIDE_WAYS).map(move |k| {
-        let cos = 1.0 - (1.0 - SIDE_COSINE) * k as f32 / (SIDE_WAYS - 1) as f32;
-        axis * cos + rotate_about(axis, golden_angle * k as f32, first) * libm::sqrtf(1.0 - cos * cos)
-    })
+/// Directions that are probed around a ball in a cavity.
+const SPHERE_WAYS: usize = 64;
+/// Largest share of them that leads out of a cavity. From a point on its rim it would be a half.
+const MAX_OPENING: f32 = 0.45;
+/// Cosine to the axis of the opening below which a way does not lead out of it, but through a hole.
+const OPENING_COSINE: f32 = -0.2;
+/// Directions through holes that a cavity may have, as a cap has below its strap. Two opposite cones lead out of a loop.
+const MAX_HOLES: usize = 2;
+
+/// Whether a ball of `radius` metres at `at` is in a cavity with one opening, which does not face up. In object coordinates.
+pub(super) fn is_in_cavity(
+    body: &Body,
+    at: &Point,
+    up: &Vector,
+    radius: f32,
+    meter: &mut Meter,
+) -> Result<bool, Stop> {
+    let mut ways = heapless::Vec::<Vector, SPHERE_WAYS>::new();
+    for k in 0..SPHERE_WAYS {
+        let way = fibonacci_direction(k, SPHERE_WAYS);
+        if !(Ball { body, at, radius }).is_stopped(&way, meter)? {
+            let _ = ways.push(way);
+            if ways.len() as f32 > MAX_OPENING * SPHERE_WAYS as f32 {
+                return Ok(false);
+            }
+        }
+    }
+    let axis = unit_or(ways.iter().sum(), Vector::zeros());
+    let holes = ways.iter().filter(|way| way.dot(&axis) < OPENING_COSINE).count();
+    Ok(!ways.is_empty() && holes <= MAX_HOLES && axis.dot(up) < 0.0)
 }
 
 /// Whether the object stops a ball of `radius` metres on the straight way from `at` in the direction `way`, in object

@@ -1,6 +1,6 @@
 //! How an object hangs: by a loop, by a hook, over a tip, or only by friction.
 
-use super::enclosure::{Enclosure, is_stopped};
+use super::enclosure::{Enclosure, is_in_cavity, is_stopped};
 use super::{Body, Contact, Support};
 use crate::geometry::{Point, Pose, Vector, any_perpendicular, principal_direction, rotate_about};
 use crate::monitor::{Meter, Stop};
@@ -74,8 +74,8 @@ impl Kinds {
 const CARRYING_SHARE: f32 = 0.15;
 /// Cosine between a contact's normal and up below which it steadies the object and does not carry it.
 const CARRYING_COSINE: f32 = 0.2;
-/// Radius around a contact in which the direction of the bar is estimated, metres: more than a bar's thickness, less than its
-/// length.
+/// Radius around a contact in which the direction of the bar is estimated where the surface there is flat, metres: more than a
+/// bar's thickness, less than its length.
 const BAR_RADIUS: f32 = 0.02;
 /// Depths below a contact at which the axis of the bar is looked for, metres: the first with room for the bar counts.
 const BAR_DEPTHS: [f32; 4] = [0.004, 0.0025, 0.0015, 0.001];
@@ -83,11 +83,11 @@ const BAR_DEPTHS: [f32; 4] = [0.004, 0.0025, 0.0015, 0.001];
 const MIN_ROOM: f32 = 0.6;
 /// Thickness of the probe, as a share of that depth: a gap through which it does not pass is closed.
 const PROBE_RADIUS: f32 = 0.4;
-/// Sine of the tilt of planes in which a loop is looked for, against the plane across the bar: 40 degrees. A thin ring may hang
-/// that askew.
-const TILT: (f32, f32) = (0.643, 0.766);
+/// Tilts of the planes in which a loop is looked for, against the plane across the bar, radians: 35 and 65 degrees. A thin ring
+/// may hang that askew, and the direction of a bar next to a post is not exact.
+const TILTS: [f32; 2] = [0.61, 1.13];
 /// Directions in which these planes tilt.
-const TILTS: usize = 8;
+const TILT_DIRECTIONS: usize = 8;
 
 /// How the object hangs at `rest`, carried by `contacts`.
 pub(crate) fn kind_of(
@@ -105,7 +105,7 @@ pub(crate) fn kind_of(
             continue;
         }
         let Some(probe) = Probe::below(body, &to_object, contact) else { continue };
-        let bar = principal_direction(&support.tree, &contact.position, BAR_RADIUS);
+        let bar = bar_direction(support, contact);
         match probe.enclosure(body, &to_object, &bar, up, meter)? {
             Enclosure::Loop => return Ok(Kind::Threaded),
             Enclosure::Cavity => kind = Kind::Capped,
@@ -121,6 +121,12 @@ pub(crate) fn kind_of(
         }
     }
     Ok(kind)
+}
+
+/// Unit vector along the bar that a contact is on, in supporter coordinates; its sign has no meaning.
+fn bar_direction(support: &Support, contact: &Contact) -> Vector {
+    let along = support.bar_near(&contact.position, &contact.normal);
+    along.unwrap_or_else(|| principal_direction(&support.tree, &contact.position, BAR_RADIUS))
 }
 
 /// A ball on the axis of the bar, in object coordinates.
@@ -148,24 +154,31 @@ impl Probe {
         meter: &mut Meter,
     ) -> Result<Enclosure, Stop> {
         let (bar, up) = (to_object * bar, to_object * up);
-        // The level plane comes first: it tells a cavity, and a thick tip has no direction.
-        for normal in [up, bar].into_iter().chain(tilted(bar)) {
-            let enclosure = Enclosure::across(body, &self.at, &normal, self.radius, meter)?;
-            if enclosure != Enclosure::Open {
-                return Ok(enclosure);
+        if is_in_cavity(body, &self.at, &up, self.radius, meter)? {
+            return Ok(Enclosure::Cavity);
+        }
+        for normal in core::iter::once(bar).chain(tilted(bar)) {
+            if Enclosure::across(body, &self.at, &normal, self.radius, meter)? == Enclosure::Loop {
+                return Ok(Enclosure::Loop);
             }
         }
-        Ok(Enclosure::Open)
+        // A shallow cavity over a tip is closed in the level plane alone.
+        match Enclosure::across(body, &self.at, &up, self.radius, meter)? {
+            Enclosure::Cavity => Ok(Enclosure::Cavity),
+            _ => Ok(Enclosure::Open),
+        }
     }
 }
 
-/// Unit vectors around `axis`, tilted by [`TILT`].
+/// Unit vectors around `axis`, tilted by [`TILTS`].
 fn tilted(axis: Vector) -> impl Iterator<Item = Vector> {
-    let (sin, cos) = TILT;
     let first = any_perpendicular(axis);
-    (0..TILTS).map(move |k| {
-        let angle = core::f32::consts::TAU * k as f32 / TILTS as f32;
-        axis * cos + rotate_about(axis, angle, first) * sin
+    TILTS.into_iter().flat_map(move |tilt| {
+        let (sin, cos) = libm::sincosf(tilt);
+        (0..TILT_DIRECTIONS).map(move |k| {
+            let angle = core::f32::consts::TAU * k as f32 / TILT_DIRECTIONS as f32;
+            axis * cos + rotate_about(axis, angle, first) * sin
+        })
     })
 }
 

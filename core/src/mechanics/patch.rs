@@ -27,6 +27,11 @@ pub(crate) struct Patch {
     pub(super) ends: u32,
 }
 
+/// Cosine between the normals of a patch and a contact on it.
+const FACING_NORMALS: f32 = 0.7;
+/// Curvature across a bar beyond that along it, 1/m: that of a bar of 4 cm radius. Flatter surfaces have no direction.
+const BAR_CURVATURE: f32 = 25.0;
+
 impl Patch {
     /// Bit of [`ends`](Self::ends) that marks a wire: the patch is the whole cylinder around it.
     pub(super) const WIRE: u32 = 1 << 4;
@@ -86,6 +91,18 @@ impl Patch {
         }
         let [a, b] = self.curvatures_towards(offset);
         sagitta(offset[0], a) + sagitta(offset[1], b)
+    }
+
+    /// Whether the patch faces as a contact with this unit normal does; a wire faces all around.
+    pub(super) fn faces(&self, normal: &Vector) -> bool {
+        self.is_wire() || self.normal.dot(normal) > FACING_NORMALS
+    }
+
+    /// Unit vector along the bar of which the patch is a part; `None` if the surface is hardly more curved across than along.
+    pub(super) fn bar_direction(&self) -> Option<Vector> {
+        let [forwards, backwards, right, left] = self.curvatures;
+        let (along, across) = (0.5 * (forwards + backwards), 0.5 * (right + left));
+        (self.is_wire() || across > BAR_CURVATURE + along.abs()).then_some(self.along)
     }
 
     /// Unit vectors along, across and normal to the patch.

@@ -103,6 +103,15 @@ impl<'a> Support<'a> {
             .map(|(point, patch)| (point, &patch.normal))
     }
 
+    /// Unit vector along the surface in the direction in which it is least curved, at the patch nearest to a point that faces as
+    /// `normal`; `None` where the surface is flat or nothing faces there.
+    pub(crate) fn bar_near(&self, point: &Point, normal: &Vector) -> Option<Vector> {
+        let facing = self.positions().zip(self.patches).filter(|(_, patch)| patch.faces(normal));
+        let distance = |at: &Point| (at - point).norm_squared();
+        let nearest = facing.min_by(|(a, _), (b, _)| distance(a).total_cmp(&distance(b)));
+        nearest.and_then(|(_, patch)| patch.bar_direction())
+    }
+
     /// Indices of the patches at a range of points of the tree.
     pub(crate) fn patches_of(&self, points: &Range<usize>) -> Range<usize> {
         let before = |limit: usize| self.representatives.partition_point(|&index| (index as usize) < limit);

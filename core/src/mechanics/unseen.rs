@@ -2,7 +2,7 @@
 
 use super::constants::{NEAR_GUESS, NEAR_SHADOW, OFF_MESH};
 use super::{Body, Support};
-use crate::geometry::{Mesh, Point, Pose, Vector, unit_or};
+use crate::geometry::{Mesh, Point, Pose, Vector, fibonacci_direction, unit_or};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
 
@@ -73,16 +73,10 @@ fn unseen_directions(centre: &Point, viewpoints: &[Point]) -> (f32, [f32; 3]) {
             direction.dot(&way) > SEES_WELL * way.norm()
         })
     };
-    let unseen = || (0..DIRECTIONS).map(direction).filter(|direction| !is_seen(direction));
+    let unseen = || {
+        (0..DIRECTIONS).map(|k| fibonacci_direction(k, DIRECTIONS)).filter(|direction| !is_seen(direction))
+    };
     (unseen().count() as f32 / DIRECTIONS as f32, unit_or(unseen().sum(), Vector::zeros()).into())
-}
-
-/// Point of a Fibonacci lattice of [`DIRECTIONS`] points on the unit sphere.
-fn direction(k: usize) -> Vector {
-    let golden_angle = core::f32::consts::PI * (3.0 - libm::sqrtf(5.0));
-    let z = 1.0 - (2.0 * k as f32 + 1.0) / DIRECTIONS as f32;
-    let (across, angle) = (libm::sqrtf(1.0 - z * z), golden_angle * k as f32);
-    Vector::new(across * libm::cosf(angle), across * libm::sinf(angle), z)
 }
 
 /// How much of what matters no camera has seen with the object at `pose`.

@@ -52,14 +52,8 @@ pub(super) fn supporter(
             let checked = mesh.mesh().with_context(at)?;
             (sample_supporter(&checked, arguments.supporter_points as usize, seed), mesh.notes)
         }
-        SupporterFile::Cloud(mut cloud) => {
-            TooLarge::check_cloud(&cloud).with_context(at)?;
-            placement.apply(&mut cloud.points);
-            placement.apply(&mut cloud.viewpoints);
-            cloud.origin = placement.up.turn(cloud.origin.map(|x| x * f64::from(placement.scale)));
-            for normal in cloud.normals.iter_mut().flatten() {
-                *normal = placement.up.turn(*normal);
-            }
+        SupporterFile::Cloud(cloud) => {
+            let mut cloud = placed_cloud(path, cloud, placement)?;
             let notes = core::mem::take(&mut cloud.notes);
             (cloud, notes)
         }
@@ -72,6 +66,41 @@ pub(super) fn supporter(
     let scale_warning = placement.warn_of_size(&aabb, "supporter");
     tell(path, &notes, &scale_warning);
     Ok(Placed { shape: cloud, scale_warning })
+}
+
+/// Applies the placement to a cloud.
+pub(super) fn placed_cloud(path: &Path, mut cloud: CloudFile, placement: &Placement) -> Result<CloudFile> {
+    TooLarge::check_cloud(&cloud).with_context(|| path.display().to_string())?;
+    placement.apply(&mut cloud.points);
+    placement.apply(&mut cloud.viewpoints);
+    cloud.origin = placement.up.turn(cloud.origin.map(|x| x * f64::from(placement.scale)));
+    for normal in cloud.normals.iter_mut().flatten() {
+        *normal = placement.up.turn(*normal);
+    }
+    Ok(cloud)
+}
+
+/// Points on a mesh of things near the supporter, close enough together that no part of an object fits between them.
+pub(super) fn scene_mesh(path: &Path, mut mesh: MeshFile, placement: &Placement) -> Result<CloudFile> {
+    let at = || path.display().to_string();
+    TooLarge::check_mesh(&mesh).with_context(at)?;
+    placement.apply(&mut mesh.vertices);
+    let checked = mesh.mesh().with_context(at)?;
+    let area: f64 =
+        checked.triangles().iter().map(|triangle| area(triangle.map(|v| mesh.vertices[v as usize]))).sum();
+    let count = (area / (SCENE_SPACING * SCENE_SPACING)) as usize;
+    Ok(sample_supporter(&checked, count.clamp(1_000, MAX_SCENE_POINTS), 0))
+}
+
+/// Distance between the points of a mesh of a scene, m.
+const SCENE_SPACING: f64 = 0.003;
+/// Most points of a mesh of a scene; a larger one gets them farther apart.
+const MAX_SCENE_POINTS: usize = 200_000;
+
+/// Area of a triangle, m².
+fn area(corners: [[f32; 3]; 3]) -> f64 {
+    let [a, b, c] = corners.map(|corner| Point::from(corner).cast::<f64>());
+    0.5 * (b - a).cross(&(c - a)).norm()
 }
 
 /// The points as the core takes them, with the places to hang on.

@@ -9,6 +9,7 @@ mod params;
 pub(crate) mod predict;
 mod progress;
 mod recording;
+mod request;
 pub(crate) mod scan;
 mod terminal;
 
@@ -17,6 +18,7 @@ pub(crate) use terminal::say;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use hangpose::geometry::Aabb;
 use recording::{DepthArguments, RecordingArguments};
+use request::RequestArguments;
 use std::path::PathBuf;
 
 /// Predict how to hang an object on a supporter, without training data and without a GPU.
@@ -62,6 +64,8 @@ pub(crate) struct PredictArguments {
     result: ResultArguments,
     #[command(flatten, next_help_heading = "Points of the supporter")]
     cloud: CloudArguments,
+    #[command(flatten, next_help_heading = "How and where it hangs")]
+    request: RequestArguments,
     #[command(flatten, next_help_heading = "Method")]
     method: MethodArguments,
     #[command(flatten, next_help_heading = "Depth images in place of --object or --supporter")]

@@ -11,7 +11,7 @@ use anyhow::{Context, Result};
 use hangpose::files::{self, CloudFile, MeshFile, SupporterFile};
 use hangpose::geometry::{Aabb, Cloud, Mesh, Point};
 use hangpose::hanging::sites::{Cost, SiteMatch};
-use hangpose::hanging::{self, HangingPose, Object, Request, Rest, Stage, Supporter, predict, predict_bytes};
+use hangpose::hanging::{self, HangingPose, Object, Rest, Stage, Supporter, predict, predict_bytes};
 use hangpose::mechanics::Unseen;
 use hangpose::memory::Limits;
 use hangpose::{CentreOfMass, Monitor};
@@ -44,6 +44,8 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     let mesh = object_source.object(&arguments.files)?;
     let points = supporter_source.supporter(&arguments.files, &arguments.cloud, params.seed)?;
     let cloud = input::seen(&points, &arguments.cloud)?;
+    let wishes = arguments.request.read(&arguments.files, &points)?;
+    let request = &wishes.request()?;
     let (cloud, params) = (&cloud, &params);
     let mut seconds = Seconds { read: start.elapsed().as_secs_f64(), ..Seconds::default() };
 
@@ -75,15 +77,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
         };
         let (object, supporter) = ((object.0?, object.1), (supporter.0?, supporter.1));
         let (prediction, matching) = timed(|| {
-            predict(
-                &object.0,
-                &supporter.0,
-                &Request::ANY,
-                params,
-                &mut poses,
-                prediction_memory,
-                monitors[2],
-            )
+            predict(&object.0, &supporter.0, request, params, &mut poses, prediction_memory, monitors[2])
         });
         (seconds.object, seconds.supporter, seconds.matching) = (object.1, supporter.1, matching);
         Ok((object.0, supporter.0, prediction?))

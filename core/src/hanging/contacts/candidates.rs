@@ -161,6 +161,15 @@ impl<'a> CandidateSearch<'a> {
         Ok(())
     }
 
+    /// Drops the contacts inside cavities, which only caps hang by.
+    pub(super) fn drop_enclosed(&mut self) {
+        for (way, contact) in self.ways.chunks_mut(2).zip(self.contacts) {
+            if contact.passage < BAR_LENGTH {
+                way.iter_mut().for_each(|way| way.score = f32::NEG_INFINITY);
+            }
+        }
+    }
+
     /// Takes a share of the discounts off the scores of the candidates with the same contact or on the same place.
     pub(super) fn discount(&mut self, candidate: &Candidate, share: f32) {
         for way in &mut self.ways[2 * candidate.contact..][..2] {

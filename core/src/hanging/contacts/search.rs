@@ -88,6 +88,9 @@ fn release(
         let stays = settling.release(&pose, poses, meter)?;
         candidates.discount(&candidate, if stays { REST_SHARE } else { 1.0 });
         let has_enough = settling.counts.firm_as_preferred >= firm_enough;
+        if settling.has_enough_of_others() {
+            candidates.drop_enclosed();
+        }
         if has_enough || settling.counts.probable > 0 && ATTEMPT_DIVISOR * (attempt + 1) >= attempts {
             break;
         }

@@ -171,6 +171,9 @@ impl<'a> Settling<'a> {
         let (down, params) = (-self.params.up(), self.params);
         let contacts = carrying_contacts(scene, &settled.pose, &down, params, self.sleeps, meter)?;
         let kind = kind_of(scene, &settled.pose, &contacts, &-down, meter)?;
+        if self.has_enough_of_others() && !self.request.prefer.contains(kind) {
+            return Ok(true);
+        }
         if !self.is_as_asked((&settled.pose, &pose), &contacts, kind, meter)? {
             return Ok(true);
         }
@@ -201,6 +204,11 @@ impl<'a> Settling<'a> {
         self.count_firm(&rest);
         self.offer(HangingPose { pose, rest: Some(rest), matched: start.matched }, poses);
         Ok(true)
+    }
+
+    /// Whether enough firm poses are known that are not of the preferred kinds: more of them would change nothing.
+    pub(super) fn has_enough_of_others(&self) -> bool {
+        self.counts.firm - self.counts.firm_as_preferred >= self.params.firm_enough
     }
 
     /// Offers a pose, unless one that is hardly different is as good.
