@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench tables calibrate peer lib install deb samples header clean
+.PHONY: help setup demo test bench tables meant calibrate peer lib install deb samples header clean
 
 help:
 	@echo "make demo     predict how the sample mug hangs on the sample hook, simulate it and draw it"
@@ -7,6 +7,7 @@ help:
 	@echo "make bench    measure time and memory"
 	@echo "make peer     compare time and poses with another implementation: PEER=peer.py [MESHES=folder]"
 	@echo "make tables   simulate 600 pairs in two engines and write docs/RESULTS.md [MESHES=folder adds real meshes]"
+	@echo "make meant    measure poses in turned frames, tolerances and probabilities [MESHES=folder adds real meshes]"
 	@echo "make calibrate  refit the constants of docs/PROBABILITY.md"
 	@echo "make lib      build libhangpose.a and libhangpose.so for C and C++ in build/link"
 	@echo "make install  install the libraries and headers: [PREFIX=/usr/local] [DESTDIR=...]"
@@ -55,6 +56,11 @@ tables: setup
 	@printf '## The core against Bullet\n\nRandom candidate poses, released by `cargo run --release -p host-tests --bin settle`:\n\n```text\n' >> docs/RESULTS.md
 	cargo run --release -p host-tests --bin settle >> docs/RESULTS.md
 	@printf '```\n' >> docs/RESULTS.md
+
+meant: setup
+	cargo run --release -p host-tests --bin meant -- turned --pairs 90 --seed 31
+	cargo run --release -p host-tests --bin meant -- tolerance --pairs 90 --seed 31
+	cargo run --release -p host-tests --bin meant -- probability --pairs 90 --seed 31 $(if $(MESHES),--meshes $(MESHES))
 
 peer_python = build/peer/bin/python
 

@@ -3,9 +3,12 @@
 
 pub mod gallery;
 pub mod judge;
+mod predicted;
 pub mod scan;
 pub mod shapes;
 mod shell;
 pub mod solid;
 pub mod tables;
 pub mod winding;
+
+pub use predicted::predicted;

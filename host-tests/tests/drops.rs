@@ -92,6 +92,7 @@ fn a_run_that_was_killed_resumes_with_the_same_rows() {
         threads: 2,
         record: &record,
         all: false,
+        motion: false,
         gallery: None,
     };
     let made_now = AtomicUsize::new(0);

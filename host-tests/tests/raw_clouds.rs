@@ -185,6 +185,7 @@ fn sample() -> Case {
         object_kind: "mug".into(),
         supporter_kind: "hook".into(),
         fit: Fit::Yes,
+        meant: None,
         object: solid("mug.obj"),
         supporter: solid("hook.obj"),
         openings: Vec::new(),

@@ -154,7 +154,7 @@ fn openings_are_as_wide_as_they_say() {
             let triangles = corners(&solid);
             let hulls: Vec<Hull> = solid.parts.iter().map(Hull::of).collect();
             for o in openings {
-                if matches!(o.kind, OpeningKind::Rim | OpeningKind::Neck { .. }) {
+                if !o.is_meant || matches!(o.kind, OpeningKind::Rim | OpeningKind::Neck { .. }) {
                     continue;
                 }
                 let (centre, axis) = (double(o.centre), double(o.axis));

@@ -53,9 +53,12 @@ struct Arguments {
     /// Judge all of the ten best poses, not only up to the first success, for the calibration of the probability.
     #[arg(long)]
     all: bool,
-    /// Print only the tables that compare the profiles.
+    /// Print only the tables that compare the profiles and those of how their best poses hang.
     #[arg(long)]
     summary: bool,
+    /// Tell also by the motions that free the object how the best poses of generated pairs hang, as for real meshes.
+    #[arg(long)]
+    motion: bool,
     /// Keep the rows of the JSON file instead of starting over.
     #[arg(long)]
     resume: bool,
@@ -138,6 +141,7 @@ fn main() -> Result<()> {
             threads: arguments.threads,
             record: &arguments.json,
             all: arguments.all,
+            motion: arguments.motion,
             gallery: arguments.gallery.as_deref(),
         };
         let bar = ProgressBar::new(0);

@@ -7,6 +7,7 @@
 
 mod bullet;
 mod buried;
+mod freedom;
 mod mass;
 mod ode;
 mod overlap;
@@ -14,6 +15,7 @@ mod verdict;
 mod world;
 
 pub use bullet::Bullet;
+pub use freedom::freedom;
 pub use mass::Mass;
 pub use ode::Ode;
 pub(crate) use overlap::Overlap;

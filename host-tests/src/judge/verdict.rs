@@ -198,7 +198,8 @@ impl Trial<'_> {
     }
 }
 
-fn bounds(vertices: &[[f32; 3]]) -> (Point3<f64>, Point3<f64>) {
+/// Lower and upper corner of the bounding box.
+pub(super) fn bounds(vertices: &[[f32; 3]]) -> (Point3<f64>, Point3<f64>) {
     let points = || vertices.iter().map(|&vertex| Point3::from(vertex).cast::<f64>());
     let low = points().reduce(|a, b| a.inf(&b)).unwrap_or_default();
     let high = points().reduce(|a, b| a.sup(&b)).unwrap_or_default();

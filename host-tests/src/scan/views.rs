@@ -79,12 +79,14 @@ pub fn off_front(random: &mut Random) -> Vector {
     before(side * random.range(OFF_FRONT[0], OFF_FRONT[1]), random.range(ABOVE[0], ABOVE[1]))
 }
 
-/// A direction from which one of the openings is seen through, up to a random tilt; any direction without openings.
+/// A direction from which one of the openings by which people hang the object is seen through, up to a random tilt; any
+/// direction without openings.
 pub fn through(openings: &[Opening], random: &mut Random) -> Vector {
+    let openings: Vec<&Opening> = openings.iter().filter(|opening| opening.is_meant).collect();
     if openings.is_empty() {
         return sphere(1, random)[0];
     }
-    let Opening { kind, axis, .. } = openings[random.pick(openings.len())];
+    let &Opening { kind, axis, .. } = openings[random.pick(openings.len())];
     let axis = Vector::from(axis);
     let along = match kind {
         OpeningKind::Hole | OpeningKind::Hook => axis * if random.chance(0.5) { 1.0 } else { -1.0 },

@@ -6,7 +6,7 @@ use crate::solid::{Part, Solid};
 
 /// A shape under construction. Every method adds one closed body and the convex parts that fill it.
 #[derive(Clone, Default)]
-pub(crate) struct Builder {
+pub struct Builder {
     vertices: Vec<V>,
     triangles: Vec<[usize; 3]>,
     parts: Vec<Convex>,
@@ -35,7 +35,7 @@ fn tangents(path: &[V]) -> (Vec<V>, bool) {
 
 impl Builder {
     /// The shape in single precision.
-    pub(crate) fn finish(&self) -> Solid {
+    pub fn finish(&self) -> Solid {
         let part = |part: &Convex| match part {
             Convex::Hull(points) => Part::Hull(points.iter().copied().map(single).collect()),
             &Convex::Capsule(from, to, radius) => {
@@ -54,7 +54,7 @@ impl Builder {
     }
 
     /// Adds `other` with its x, y and z along the right-handed unit vectors `axes` and its origin at `origin`.
-    pub(crate) fn place(&mut self, other: &Self, axes: [V; 3], origin: V) {
+    pub fn place(&mut self, other: &Self, axes: [V; 3], origin: V) {
         let to = |v: V| along(along(along(origin, v[0], axes[0]), v[1], axes[1]), v[2], axes[2]);
         let turned = |v: V| sub(to(v), origin);
         let first = self.vertices.len();
@@ -77,7 +77,7 @@ impl Builder {
 
     /// Adds the body between consecutive convex polygons with equal numbers of corners. If closed, the first polygon
     /// also follows the last. A first or last polygon of one point is a tip. Each pair gives one hull.
-    pub(crate) fn loft(&mut self, rings: &[Vec<V>], is_closed: bool) {
+    pub fn loft(&mut self, rings: &[Vec<V>], is_closed: bool) {
         self.skin(rings, is_closed);
         for i in 1..rings.len() + usize::from(is_closed) {
             let (a, b) = (&rings[i - 1], &rings[i % rings.len()]);
@@ -132,13 +132,13 @@ impl Builder {
 
     /// Adds a convex polygon swept along a path, with flat ends. A path that ends at its first point gives a closed
     /// sweep.
-    pub(crate) fn sweep(&mut self, path: &[V], side: V, section: &[[f64; 2]]) {
+    pub fn sweep(&mut self, path: &[V], side: V, section: &[[f64; 2]]) {
         let (rings, is_closed) = Self::rings(path, side, |_| section.to_vec());
         self.loft(&rings, is_closed);
     }
 
     /// Adds a sweep whose polygon is scaled by `size` of the position along the path, from 0 to 1.
-    pub(crate) fn tapered(&mut self, path: &[V], side: V, section: &[[f64; 2]], size: impl Fn(f64) -> f64) {
+    pub fn tapered(&mut self, path: &[V], side: V, section: &[[f64; 2]], size: impl Fn(f64) -> f64) {
         let last = (path.len() - 1) as f64;
         let scaled = |i| {
             let s = size(i as f64 / last);
@@ -149,7 +149,7 @@ impl Builder {
     }
 
     /// Adds a round tube with round ends, or a closed tube if the path is closed. Its parts are capsules.
-    pub(crate) fn tube(&mut self, path: &[V], radius: f64) {
+    pub fn tube(&mut self, path: &[V], radius: f64) {
         let start = sub(path[1], path[0]);
         let side = if start[2].abs() < 0.7 * length(start) { Z } else { X };
         let (mut rings, is_closed) = Self::rings(path, side, |_| circle(radius));
@@ -182,7 +182,7 @@ impl Builder {
 
     /// Adds the solid of revolution of an outline of (radius, z) about the z axis, with one hull per step of the
     /// outline. The outline may begin and end on the axis.
-    pub(crate) fn lathe(&mut self, outline: &[[f64; 2]]) {
+    pub fn lathe(&mut self, outline: &[[f64; 2]]) {
         let count = corners_of(outline.iter().fold(0.0, |most, p| p[0].max(most)));
         let ring = |&[r, z]: &[f64; 2]| match r {
             0.0 => vec![[0.0, 0.0, z]],
@@ -195,7 +195,7 @@ impl Builder {
     }
 
     /// Adds a ball, with hulls that are slices.
-    pub(crate) fn ball(&mut self, centre: V, radius: f64) {
+    pub fn ball(&mut self, centre: V, radius: f64) {
         let mut ball = Self::default();
         let mut outline: Vec<[f64; 2]> =
             (0..=12).map(|i| turn(15.0 * i as f64)).map(|[cos, sin]| [radius * sin, -radius * cos]).collect();
@@ -206,7 +206,7 @@ impl Builder {
 
     /// Adds a hollow body of revolution about the z axis: each two consecutive pairs of (radius, z) span a convex
     /// quadrilateral, which is revolved. The first pair may lie on the axis.
-    pub(crate) fn revolve(&mut self, wall: &[[[f64; 2]; 2]]) {
+    pub fn revolve(&mut self, wall: &[[[f64; 2]; 2]]) {
         const COUNT: usize = 24;
         let at = |[r, z]: [f64; 2], i: usize| {
             let [cos, sin] = turn(360.0 * i as f64 / COUNT as f64);
@@ -242,7 +242,7 @@ impl Builder {
 
     /// Adds a band in the x-y plane, from `low` to `high` in z: each two consecutive pairs of points span a convex
     /// quadrilateral.
-    pub(crate) fn strip(&mut self, pairs: &[[[f64; 2]; 2]], [low, high]: [f64; 2], is_closed: bool) {
+    pub fn strip(&mut self, pairs: &[[[f64; 2]; 2]], [low, high]: [f64; 2], is_closed: bool) {
         let ring = |&[a, b]: &[[f64; 2]; 2]| {
             vec![[a[0], a[1], low], [b[0], b[1], low], [b[0], b[1], high], [a[0], a[1], high]]
         };
@@ -250,7 +250,7 @@ impl Builder {
     }
 
     /// Adds a flat ring about (x, y) with elliptical edges of half axes `inner` and `outer`.
-    pub(crate) fn eye(&mut self, [x, y]: [f64; 2], inner: [f64; 2], outer: [f64; 2], z: [f64; 2]) {
+    pub fn eye(&mut self, [x, y]: [f64; 2], inner: [f64; 2], outer: [f64; 2], z: [f64; 2]) {
         let pairs: Vec<_> = (0..24)
             .map(|i| turn(15.0 * i as f64))
             .map(|[cos, sin]| [inner, outer].map(|[a, b]| [x + a * cos, y + b * sin]))
@@ -259,13 +259,13 @@ impl Builder {
     }
 
     /// Adds a prism over a convex outline in the x-y plane, from `low` to `high` in z.
-    pub(crate) fn prism(&mut self, outline: &[[f64; 2]], [low, high]: [f64; 2]) {
+    pub fn prism(&mut self, outline: &[[f64; 2]], [low, high]: [f64; 2]) {
         let ring = |z: f64| outline.iter().map(|&[x, y]| [x, y, z]).collect::<Vec<V>>();
         self.loft(&[ring(low), ring(high)], false);
     }
 
     /// Adds an axis-aligned box.
-    pub(crate) fn cuboid(&mut self, low: V, high: V) {
+    pub fn cuboid(&mut self, low: V, high: V) {
         let ring = |z: f64| {
             vec![[low[0], low[1], z], [high[0], low[1], z], [high[0], high[1], z], [low[0], high[1], z]]
         };

@@ -1,7 +1,7 @@
-//! Whether an object can hang on a supporter, by the construction of both.
+//! Whether an opening of an object can hold it on a bar of a supporter, by the construction of both.
 
 use super::vector::{V, X, Y, Z, across, add, along, cross, dot, double, length, scale, sub, turn, unit};
-use super::{Bar, HangObject, Opening, OpeningKind, Support};
+use super::{Bar, HangObject, Opening, OpeningKind};
 use crate::solid::Solid;
 
 /// Smallest play between an opening and a bar, in radius, m.
@@ -11,7 +11,7 @@ const STEEP: f64 = 0.9;
 /// Smallest sine of the tilt of a bar that carries a hollow.
 const UPWARD: f64 = 0.35;
 
-/// Whether the object can hang on the supporter: some opening is wider than some bar by 1 mm of play, and the object
+/// Whether an opening of the object holds it on a bar: the opening is wider than the bar by 1 mm of play, and the object
 /// has room there. Doubtful cases count as no. The further rules are:
 ///
 /// - A hole needs a bar with a free end; a hook goes over any bar.
@@ -24,11 +24,9 @@ const UPWARD: f64 = 0.35;
 /// - A hollow needs a bar that points up by 20° or more, is a quarter as long as the hollow is deep, and ends as far
 ///   from the wall as half the radius of the hollow.
 /// - A neck needs a gap that is wider than the stem with its play, and narrower than the head by 4 mm on each side.
-pub fn fits(object: &HangObject, support: &Support) -> bool {
-    let centroid = centroid(&object.solid);
-    let pairs = object.openings.iter().flat_map(|o| support.bars.iter().map(move |b| (o, b)));
-    pairs.into_iter().any(|(opening, bar)| match opening.kind {
-        OpeningKind::Hole | OpeningKind::Hook => goes_over(object, opening, centroid, bar),
+pub(super) fn holds(object: &HangObject, opening: &Opening, bar: &Bar) -> bool {
+    match opening.kind {
+        OpeningKind::Hole | OpeningKind::Hook => goes_over(object, opening, centroid(&object.solid), bar),
         OpeningKind::Rim => covers(object, opening, bar),
         OpeningKind::Neck { head_radius } => {
             let (gap, below) = (f64::from(bar.gap), below(object, opening));
@@ -38,7 +36,7 @@ pub fn fits(object: &HangObject, support: &Support) -> bool {
                 && f64::from(bar.length) > f64::from(head_radius)
                 && f64::from(bar.drop) > below
         }
-    })
+    }
 }
 
 /// Extent of the object from the opening against the opening's axis, m.

@@ -3,10 +3,12 @@
 //! All are closed surfaces with convex parts that fill them, in metres. An object has its own frame. A supporter has z
 //! up; on a wall, the front of its plate is at x = 0 and it points towards +x.
 //!
-//! Whether an object fits on a supporter follows from their construction, independent of any predictor: see [`fits`].
+//! Whether an object fits on a supporter, how a person would hang it, and how it hangs at a rest pose follow from their
+//! construction, independent of any predictor: see [`fits`], [`meant`] and [`joined`].
 
 mod builder;
 mod fits;
+mod meant;
 mod objects;
 mod openings;
 mod random;
@@ -14,7 +16,8 @@ mod sections;
 mod supporters;
 pub mod vector;
 
-pub use fits::fits;
+pub use builder::Builder;
+pub use meant::{Joint, fits, joined, meant};
 pub use objects::OBJECTS;
 pub use random::Random;
 pub use supporters::SUPPORTERS;
@@ -81,12 +84,14 @@ pub enum OpeningKind {
 pub struct Opening {
     /// How it holds the object.
     pub kind: OpeningKind,
+    /// Whether people hang the object by it. An object may come to hang by others, such as a mug by its hollow.
+    pub is_meant: bool,
     /// Centre of the widest bar that passes the opening.
     pub centre: [f32; 3],
     /// Unit vector along that bar.
     pub axis: [f32; 3],
     /// Radius of that bar, m. The bar is straight and extends at least 5 mm to both sides. For a [`OpeningKind::Neck`],
-    /// the radius of the stem.
+    /// the radius of the stem. An estimate if people do not hang the object by it.
     pub clear_radius: f32,
 }
 

@@ -53,9 +53,19 @@ impl HangObject {
 
     /// Adds an opening of any kind.
     pub(crate) fn push(&mut self, kind: OpeningKind, centre: V, axis: V, clear_radius: f64) {
-        let clear_radius = clear_radius as f32;
-        self.openings.push(Opening { kind, centre: single(centre), axis: single(axis), clear_radius });
+        self.openings.push(opening(kind, true, centre, axis, clear_radius));
     }
+
+    /// Adds an opening by which the object may come to hang although no person hangs it so.
+    pub(crate) fn also(mut self, kind: OpeningKind, centre: V, axis: V, clear_radius: f64) -> Self {
+        self.openings.push(opening(kind, false, centre, axis, clear_radius));
+        self
+    }
+}
+
+fn opening(kind: OpeningKind, is_meant: bool, centre: V, axis: V, clear_radius: f64) -> Opening {
+    let (centre, axis) = (single(centre), single(axis));
+    Opening { kind, is_meant, centre, axis, clear_radius: clear_radius as f32 }
 }
 
 /// The triangles that a bar near a point may touch.

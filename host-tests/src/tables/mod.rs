@@ -3,6 +3,7 @@
 mod calibration;
 pub mod case;
 mod cause;
+mod kinds;
 mod loss;
 pub mod proportion;
 pub mod real;
@@ -10,5 +11,5 @@ pub mod report;
 pub mod row;
 pub mod run;
 pub mod scans;
-mod search;
+pub mod search;
 mod seen;

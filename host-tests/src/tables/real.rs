@@ -55,6 +55,7 @@ pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
                 object_kind: object.category.clone(),
                 supporter_kind: supporter.name.clone(),
                 fit,
+                meant: None,
                 object: object.solid.clone(),
                 supporter: supporter.solid.clone(),
                 openings: Vec::new(),

@@ -1,8 +1,8 @@
 //! Tables of the outcomes in Markdown.
 
-use super::calibration;
 use super::proportion::wilson;
 use super::row::{Failure, Outcome, Row};
+use super::{calibration, kinds};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -16,14 +16,19 @@ pub fn heading(rows: &[Row]) -> String {
     )
 }
 
-/// A table that compares the profiles.
+/// A table that compares the profiles, and tables of how their best poses hang.
 pub fn summary(rows: &[Row]) -> String {
+    let (text, hanging) = comparison(rows);
+    text + &hanging
+}
+
+fn comparison(rows: &[Row]) -> (String, String) {
     let mut profiles: Vec<&str> = rows.iter().map(|row| row.profile.as_str()).collect();
     profiles.dedup();
     let mut text = String::from(
         "| profile | pairs | found | success | robust | top 10 | rejected | seconds, median |\n|---|--:|--:|--:|--:|--:|--:|--:|\n",
     );
-    let mut notes = String::new();
+    let (mut notes, mut hanging) = (String::new(), String::new());
     for profile in profiles {
         let rows: Vec<&Row> = rows.iter().filter(|row| row.profile == profile).collect();
         let [fits, doubtful, rest] = by_fit(&rows);
@@ -41,6 +46,7 @@ pub fn summary(rows: &[Row]) -> String {
             count(&|row| row.succeeds_within(10)),
             wilson(rejected, rest.len()),
         );
+        hanging += &kinds::table(&fits);
         if !doubtful.is_empty() {
             let hang = doubtful.iter().filter(|row| row.first().is_some_and(Outcome::success)).count();
             let _ = writeln!(
@@ -50,7 +56,7 @@ pub fn summary(rows: &[Row]) -> String {
             );
         }
     }
-    text + "\n" + &notes
+    (text + "\n" + &notes, hanging)
 }
 
 /// Splits the rows into pairs that fit, pairs that may fit, and pairs that cannot hang.
@@ -64,7 +70,7 @@ fn by_fit<'r>(rows: &[&'r Row]) -> [Vec<&'r Row>; 3] {
 
 /// All tables for one set of pairs.
 pub fn tables(title: &str, rows: &[Row]) -> String {
-    let mut text = format!("## {title}\n\n{}", summary(rows));
+    let mut text = format!("## {title}\n\n{}", comparison(rows).0);
     let mut profiles: Vec<&str> = rows.iter().map(|row| row.profile.as_str()).collect();
     profiles.dedup();
     for profile in profiles {
@@ -96,6 +102,7 @@ pub fn tables(title: &str, rows: &[Row]) -> String {
             );
         }
         text += &agreement(&fits);
+        text += &kinds::table(&fits);
         text += &calibration::table(&fits);
         text += &failures(&fits);
     }

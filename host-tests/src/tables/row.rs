@@ -25,6 +25,9 @@ pub struct Row {
     /// Whether the pair may hang although the search found no pose.
     #[serde(default)]
     pub doubtful: bool,
+    /// How a person would hang a generated pair that fits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub meant: Option<Kind>,
     /// Stage at which the prediction was rejected, if it was.
     pub rejection: Option<String>,
     /// Duration of analysis and prediction on one thread, s.
@@ -60,6 +63,13 @@ pub struct Outcome {
     /// Statements of the predictor about the pose, if it simulated the release.
     #[serde(default)]
     pub said: Option<Said>,
+    /// How the object hangs at the rest pose of the judgement by the construction of the shapes; `None` for real meshes and
+    /// if it does not hold.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joined: Option<Kind>,
+    /// The same by the motions that free the object; only of best poses.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub freed: Option<Kind>,
 }
 
 /// Statements of the predictor about a pose.
@@ -125,6 +135,8 @@ impl Outcome {
             turned: 0.0,
             seconds: 0.0,
             said: None,
+            joined: None,
+            freed: None,
         }
     }
 
@@ -141,6 +153,8 @@ impl Outcome {
             turned: figures.turned as f32,
             seconds,
             said: None,
+            joined: None,
+            freed: None,
         }
     }
 

@@ -7,7 +7,7 @@ use super::row::{Failure, Outcome, Row};
 use super::search::finds_a_pose;
 use super::seen::Seen;
 use crate::gallery;
-use crate::judge::{Bullet, Judge, Limits, Ode, Scene, World};
+use crate::judge::{Bullet, Judge, Limits, Ode, Scene, World, freedom};
 use crate::scan::Spec;
 use hangpose::hanging::{HangingPose, Request};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses};
@@ -49,6 +49,8 @@ pub struct Options<'a> {
     pub record: &'a Path,
     /// Whether poses after the first success are judged too.
     pub all: bool,
+    /// Whether the motions that free the object tell how the best poses of generated pairs hang, as they do for real meshes.
+    pub motion: bool,
     /// Folder for pictures of the best poses.
     pub gallery: Option<&'a Path>,
 }
@@ -139,6 +141,7 @@ fn judge(case: &Case, profile: &str, params: &Params, scan: &Option<Spec>, optio
         supporter: case.supporter_kind.clone(),
         fits: case.fit == Fit::Yes,
         doubtful: false,
+        meant: case.meant,
         rejection: Some(NOTHING_SEEN.into()),
         seconds: 0.0,
         outcomes: Vec::new(),
@@ -179,7 +182,14 @@ fn judge(case: &Case, profile: &str, params: &Params, scan: &Option<Spec>, optio
     let mut loss = row.loss;
     for pose in poses {
         let (outcome, rest) = drop(&mut world, pose);
-        let outcome = Outcome { said: pose.rest.as_ref().map(Into::into), ..outcome };
+        let is_made = !case.bars.is_empty();
+        let is_moved = outcome.holds && outcomes.is_empty() && (options.motion || !is_made);
+        let outcome = Outcome {
+            said: pose.rest.as_ref().map(Into::into),
+            joined: (outcome.holds && is_made).then(|| case.hangs(&rest)),
+            freed: if is_moved { freedom(&scene, &rest.cast()) } else { None },
+            ..outcome
+        };
         if let Some(folder) = options.gallery.filter(|_| outcomes.is_empty()) {
             let word = outcome.failure().map_or("success", Failure::name);
             let method = scan.map_or_else(|| profile.into(), |scan| format!("{profile} {scan}"));

@@ -23,7 +23,7 @@ const HIGHEST: f64 = 0.006;
 
 /// Whether the search finds a pose that hangs. Each random pose places a point of the object whose normal faces the
 /// centre of mass straight above that centre, and slightly above a point of the supporter whose normal faces up.
-pub(super) fn finds_a_pose(object: &Solid, supporter: &Solid, seed: u64) -> bool {
+pub fn finds_a_pose(object: &Solid, supporter: &Solid, seed: u64) -> bool {
     let scene = Scene { tilt: false, ..Scene::new(object, supporter) };
     let (mut world, overlap) = (Bullet::default().world(&scene), Overlap::new(&scene));
     let (object, supporter) = (Surface::new(object), Surface::new(supporter));

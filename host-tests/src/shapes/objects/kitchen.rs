@@ -3,7 +3,7 @@
 use super::super::builder::Builder;
 use super::super::sections::{ellipse, rectangle};
 use super::super::vector::{X, Y, Z, arc, bezier, scale, turn};
-use super::{HangObject, Random};
+use super::{HangObject, OpeningKind, Random};
 
 /// A spatula with a hole in its handle's end, or a ladle whose handle ends in a hook or a hole.
 pub(super) fn utensil(random: &mut Random) -> HangObject {
@@ -66,9 +66,11 @@ fn ladle(random: &mut Random, has_hook: bool) -> HangObject {
     cup.revolve(&bowl);
     // The handle runs along x to the rim of the bowl, which opens along z.
     builder.place(&cup, [X, Y, Z], [length + radius, 0.0, 0.0]);
+    let bowl_at = [length + radius, 0.0, -0.5 * radius];
+    let hollow = |ladle: HangObject| ladle.also(OpeningKind::Rim, bowl_at, Z, 0.5 * radius);
     if !has_hook {
         handle_with_hole(&mut builder, random, length + 0.001);
-        return HangObject::new(&builder).hole([0.0; 3], Z);
+        return hollow(HangObject::new(&builder).hole([0.0; 3], Z));
     }
     let thick = random.range(0.0025, 0.004);
     let bend = random.range(0.011, 0.018);
@@ -76,7 +78,7 @@ fn ladle(random: &mut Random, has_hook: bool) -> HangObject {
     let mut path = vec![[length, 0.0, 0.0]];
     path.extend(arc([0.0, 0.0, -bend], scale(Z, bend), scale(X, -bend), [0.0, tip], 16));
     builder.sweep(&path, Y, &ellipse(1.6 * thick, thick));
-    HangObject::new(&builder).hook([0.0, 0.0, -bend], Y, 2.0 * (bend - thick))
+    hollow(HangObject::new(&builder).hook([0.0, 0.0, -bend], Y, 2.0 * (bend - thick)))
 }
 
 /// A blade and a handle with a hole or a ring at its end, or a cleaver with a hole in the blade.
@@ -188,5 +190,6 @@ pub(super) fn pan(random: &mut Random) -> HangObject {
         [stretch * hole + rim - hole, rim],
         [middle[2] - half, middle[2] + half],
     );
-    HangObject::new(&builder).hole([centre[0], 0.0, middle[2]], Z)
+    let pan = HangObject::new(&builder).hole([centre[0], 0.0, middle[2]], Z);
+    pan.also(OpeningKind::Rim, [0.0, 0.0, 0.5 * deep], Z, foot - wall)
 }

@@ -3,7 +3,7 @@
 use super::super::builder::Builder;
 use super::super::sections::{circle, ellipse};
 use super::super::vector::{Y, Z, arc, scale};
-use super::{HangObject, Random};
+use super::{HangObject, OpeningKind, Random};
 
 /// A strung hoop with a handle; a tennis racquet has an open throat.
 pub(super) fn racquet(random: &mut Random) -> HangObject {
@@ -42,12 +42,33 @@ pub(super) fn racquet(random: &mut Random) -> HangObject {
     builder.sweep(&[[neck, 0.0, 0.0], [neck + handle, 0.0, 0.0]], Y, &ellipse(grip, 0.85 * grip));
     if !is_tennis {
         builder.tube(&[[a, 0.0, 0.0], [neck + 0.02, 0.0, 0.0]], 0.0035);
-        return HangObject::new(&builder).hole([0.0; 3], Z);
+        return between_strings(HangObject::new(&builder).hole([0.0; 3], Z), [a, b], spacing, gut, 0.0035);
     }
     for side in [-1.0, 1.0] {
         let [cos, sin] = super::super::vector::turn(32.0);
         let start = [a * cos, side * b * sin, 0.0];
         builder.tube(&[start, [neck + 0.01, side * 0.45 * grip, 0.0]], 0.8 * frame);
     }
-    HangObject::new(&builder).hole([0.0; 3], Z).hole([a + 0.3 * shaft, 0.0, 0.0], Z)
+    let racquet = HangObject::new(&builder).hole([0.0; 3], Z).hole([a + 0.3 * shaft, 0.0, 0.0], Z);
+    between_strings(racquet, [a, b], spacing, gut, 0.03)
+}
+
+/// Adds the openings between the strings of a hoop of half axes `a` and `b`, and the neck by which it hangs between two
+/// bars.
+fn between_strings(
+    mut racquet: HangObject,
+    [a, b]: [f64; 2],
+    spacing: f64,
+    gut: f64,
+    neck_radius: f64,
+) -> HangObject {
+    let count = (a / spacing) as i32;
+    for (i, j) in (-count..=count).flat_map(|i| (-count..=count).map(move |j| (i, j))) {
+        let [x, y] = [i, j].map(|k| f64::from(k) * spacing);
+        if (x / a).powi(2) + (y / b).powi(2) < 0.9 && (i, j) != (0, 0) {
+            racquet = racquet.also(OpeningKind::Hole, [x, y, 0.0], Z, spacing / 2.0 - gut);
+        }
+    }
+    let neck = OpeningKind::Neck { head_radius: b as f32 };
+    racquet.also(neck, [1.15 * a, 0.0, 0.0], [-1.0, 0.0, 0.0], neck_radius)
 }

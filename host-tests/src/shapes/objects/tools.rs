@@ -3,7 +3,7 @@
 use super::super::builder::Builder;
 use super::super::sections::ellipse;
 use super::super::vector::{V, X, Y, Z, along, arc, scale, turn};
-use super::{HangObject, Random};
+use super::{HangObject, OpeningKind, Random};
 
 /// Two crossed blades, each with a finger ring.
 pub(super) fn scissors(random: &mut Random) -> HangObject {
@@ -71,7 +71,8 @@ pub(super) fn wrench(random: &mut Random) -> HangObject {
         .map(|[cos, sin]| [size, 1.8 * size].map(|r| [length + r * cos, r * sin]))
         .collect();
     builder.strip(&jaw, z, false);
-    HangObject::new(&builder).hole([0.0; 3], Z)
+    let wrench = HangObject::new(&builder).hole([0.0; 3], Z);
+    wrench.also(OpeningKind::Hook, [length, 0.0, 0.0], Z, size)
 }
 
 /// A lantern with a wire bail.

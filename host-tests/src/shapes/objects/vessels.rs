@@ -28,7 +28,8 @@ pub(super) fn mug(random: &mut Random) -> HangObject {
     let path =
         bezier([[at(high), 0.0, high], [far, 0.0, high + 0.005], [far, 0.0, low], [at(low), 0.0, low]], 18);
     builder.sweep(&path, Y, &ellipse(random.range(0.004, 0.0075), random.range(0.003, 0.0045)));
-    HangObject::new(&builder).hole([rim + 0.45 * ear, 0.0, (low + high) / 2.0], Y)
+    let mug = HangObject::new(&builder).hole([rim + 0.45 * ear, 0.0, (low + high) / 2.0], Y);
+    mug.also(OpeningKind::Rim, [0.0, 0.0, 0.5 * height], Z, foot - wall)
 }
 
 /// A glass whose foot hangs in a rack.
@@ -57,7 +58,7 @@ pub(super) fn goblet(random: &mut Random) -> HangObject {
     let mut goblet = HangObject::new(&builder);
     let neck = OpeningKind::Neck { head_radius: foot as f32 };
     goblet.push(neck, [0.0, 0.0, 0.02], scale(Z, -1.0), stem);
-    goblet
+    goblet.also(OpeningKind::Rim, [0.0, 0.0, z + 0.5 * deep], Z, 0.5 * wide)
 }
 
 /// Adds a handle over the top of a vessel, half an ellipse from ear to ear along y. Returns a point inside its hole.
@@ -69,14 +70,16 @@ fn bail(builder: &mut Builder, half: f64, from: f64, rise: f64, radius: f64) -> 
 pub(super) fn bucket(random: &mut Random) -> HangObject {
     let mut builder = Builder::default();
     let (rim, height) = (random.range(0.07, 0.14), random.range(0.12, 0.26));
-    cup(&mut builder, [rim * random.range(0.7, 0.85), rim], height, 0.003);
+    let foot = rim * random.range(0.7, 0.85);
+    cup(&mut builder, [foot, rim], height, 0.003);
     let radius = random.range(0.002, 0.004);
     let ear = height - 0.015;
     for side in [-1.0, 1.0] {
         builder.tube(&[[0.0, side * (rim + 0.004), ear], [0.0, side * (rim - 0.002), ear]], 1.8 * radius);
     }
     let inside = bail(&mut builder, rim + 0.004, ear, rim * random.range(0.95, 1.2), radius);
-    HangObject::new(&builder).hole_through(inside, X, rim)
+    let bucket = HangObject::new(&builder).hole_through(inside, X, rim);
+    bucket.also(OpeningKind::Rim, [0.0, 0.0, 0.5 * height], Z, foot - 0.003)
 }
 
 /// A round or square basket with a handle overhead.
@@ -100,7 +103,8 @@ pub(super) fn basket(random: &mut Random) -> HangObject {
     path.extend(arc([0.0, 0.0, height], scale(Y, half), scale(Z, rise), [0.0, 180.0], 24));
     path.push([0.0, -half, 0.6 * height]);
     builder.sweep(&path, X, &rectangle(broad, thick));
-    HangObject::new(&builder).hole_through([0.0, 0.0, height + 0.6 * rise], X, half)
+    let basket = HangObject::new(&builder).hole_through([0.0, 0.0, height + 0.6 * rise], X, half);
+    basket.also(OpeningKind::Rim, [0.0, 0.0, 0.5 * height], Z, 0.85 * half - wall)
 }
 
 pub(super) fn watering_can(random: &mut Random) -> HangObject {
@@ -132,9 +136,8 @@ pub(super) fn watering_can(random: &mut Random) -> HangObject {
     let outermost = handle.iter().min_by(|a, b| a[0].total_cmp(&b[0])).copied().unwrap_or(front);
     // A bar across the opening that carries the front end of the handle.
     builder.cuboid([0.4 * radius, -0.8 * back, height - 0.007], [0.6 * radius, 0.8 * back, height - 0.001]);
-    HangObject::new(&builder).hole([(outermost[0] - back) / 2.0, 0.0, outermost[2]], Y).hole_through(
-        [-0.3 * radius, 0.0, height + 0.025],
-        Y,
-        radius,
-    )
+    HangObject::new(&builder)
+        .hole([(outermost[0] - back) / 2.0, 0.0, outermost[2]], Y)
+        .hole_through([-0.3 * radius, 0.0, height + 0.025], Y, radius)
+        .also(OpeningKind::Rim, [0.0, 0.0, 0.5 * height], Z, back - 0.003)
 }

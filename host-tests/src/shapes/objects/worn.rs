@@ -24,7 +24,12 @@ pub(super) fn bag(random: &mut Random) -> HangObject {
         builder.tube(&rounded(&corners, 0.7 * half, false), radius);
     }
     let inside = |y: f64| [0.0, y, height + rise - half];
-    HangObject::new(&builder).hole(inside(-d - 0.5 * radius), Y).hole(inside(d + 0.5 * radius), Y)
+    HangObject::new(&builder).hole(inside(-d - 0.5 * radius), Y).hole(inside(d + 0.5 * radius), Y).also(
+        OpeningKind::Rim,
+        [0.0, 0.0, 0.5 * height],
+        Z,
+        d - wall,
+    )
 }
 
 /// A dome, open below, with a brim.
@@ -86,7 +91,8 @@ pub(super) fn clothes_hanger(random: &mut Random) -> HangObject {
     }
     let mouth = 2.0 * bend * turn((270.0 - tip) / 2.0 - 90.0)[1].abs().min(1.0) - 2.0 * wire;
     let chord = 2.0 * bend * turn((285.0 - tip) / 2.0)[1] - 2.0 * wire;
-    HangObject::new(&builder).hook(middle, Y, mouth.min(chord))
+    let hanger = HangObject::new(&builder).hook(middle, Y, mouth.min(chord));
+    hanger.also(OpeningKind::Hole, [0.0, 0.0, -0.7 * drop], Y, 0.3 * drop - 3.0 * bar)
 }
 
 /// A headband with two cups.

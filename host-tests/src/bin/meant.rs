@@ -1,0 +1,363 @@
+//! Measures whether the best poses are the same in turned frames, whether their tolerances hold, and whether their
+//! probabilities are right. Deterministic for a seed.
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+use hangpose::Params;
+use hangpose::geometry::{Cloud, Mesh, Point, Pose, Vector};
+use hangpose::hanging::{HangingPose, Request, Rest};
+use hangpose::mechanics::{Contact, Kind};
+use host_tests::judge::{Bullet, Judge, Scene};
+use host_tests::predicted;
+use host_tests::shapes::Random;
+use host_tests::tables::case::{Case, Fit, made};
+use host_tests::tables::proportion::wilson;
+use host_tests::tables::real::real;
+use host_tests::tables::search::finds_a_pose;
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use std::f64::consts::TAU;
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+#[derive(Parser)]
+#[command(about)]
+struct Arguments {
+    #[command(subcommand)]
+    measure: Measure,
+    /// Number of generated pairs that fit.
+    #[arg(long, default_value_t = 90, global = true)]
+    pairs: usize,
+    /// Seed of the sizes and of all changes.
+    #[arg(long, default_value_t = 31, global = true)]
+    seed: u64,
+    /// Number of threads.
+    #[arg(long, default_value_t = std::thread::available_parallelism().map_or(1, Into::into), global = true)]
+    threads: usize,
+}
+
+#[derive(Subcommand)]
+enum Measure {
+    /// Share of best poses that stay the same when the object and the supporter are turned.
+    Turned,
+    /// Share of best poses that still hang when they are let go as far off as they tolerate.
+    Tolerance,
+    /// Whether poses hang as often as their probabilities say.
+    Probability {
+        /// Folder of real meshes with a manifest.json, which are judged as well.
+        #[arg(long, value_name = "DIR")]
+        meshes: Option<PathBuf>,
+        /// Largest number of pairs of real meshes.
+        #[arg(long, default_value_t = 40)]
+        real_pairs: usize,
+    },
+}
+
+/// Kinds of objects that a person hangs every day.
+const DAILY: [&str; 7] = ["mug", "cap", "pan", "utensil", "scissors", "key", "clothes hanger"];
+/// Parts of the names of supporters that a person hangs them on.
+const ON: [&str; 3] = ["hook", "tree", "peg"];
+/// Generated pairs that are needed for one pair of these.
+const DAILY_IN: usize = 6;
+
+fn main() -> Result<()> {
+    let Arguments { measure, pairs, seed, threads } = Arguments::parse();
+    match measure {
+        Measure::Turned => {
+            let mut cases = fitting(DAILY_IN * pairs, seed);
+            let is_daily = |case: &Case| {
+                DAILY.contains(&case.object_kind.as_str())
+                    && ON.iter().any(|on| case.supporter_kind.contains(on))
+            };
+            cases.retain(is_daily);
+            cases.truncate(pairs);
+            turned(&cases, threads);
+        }
+        Measure::Tolerance => tolerance(&fitting(pairs, seed), threads),
+        Measure::Probability { meshes, real_pairs } => {
+            println!("Generated pairs:\n");
+            probability(&fitting(pairs, seed), threads);
+            if let Some(folder) = meshes {
+                println!("\nReal meshes:\n");
+                probability(&real(&folder, real_pairs)?, threads);
+            }
+        }
+    }
+    Ok(())
+}
+
+fn fitting(pairs: usize, seed: u64) -> Vec<Case> {
+    made(pairs, seed).into_iter().filter(|case| case.fit == Fit::Yes).collect()
+}
+
+/// What `measure` gives for each of the cases, in their order.
+fn each<T: Send>(cases: &[Case], threads: usize, measure: impl Fn(&Case) -> T + Sync) -> Vec<T> {
+    let (next, found) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                loop {
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(case) = cases.get(index) else { return };
+                    let measured = measure(case);
+                    found.lock().expect("no thread panics").push((index, measured));
+                }
+            });
+        }
+    });
+    let mut found = found.into_inner().expect("no thread panics");
+    found.sort_by_key(|(index, _)| *index);
+    found.into_iter().map(|(_, measured)| measured).collect()
+}
+
+/// The best `count` poses of a pair.
+fn best(case: &Case, count: usize) -> Vec<HangingPose> {
+    let cloud = case.supporter_cloud();
+    let cloud = cloud.cloud().expect("samples are valid");
+    predicted(&case.object.mesh(), &cloud, &Request::ANY, &params(case), count)
+}
+
+fn params(case: &Case) -> Params {
+    Params { seed: case.seed, ..Params::default() }
+}
+
+/// Largest distance between the main contacts of two poses at the same place, m.
+const SAME_PLACE: f32 = 0.02;
+/// Largest coordinate by which a supporter is moved, m.
+const MOVED: f64 = 0.3;
+
+/// How a best pose changes in turned frames.
+#[derive(Clone, Copy)]
+struct Change {
+    /// The kinds in the original and in the turned frame; `None` where no pose was found.
+    kinds: [Option<Kind>; 2],
+    /// Distance between the main contacts, m.
+    apart: f32,
+    /// Whether the same opening kind is joined with the same bar.
+    is_same_bar: bool,
+}
+
+impl Change {
+    fn is_same_kind(&self) -> bool {
+        self.kinds[0] == self.kinds[1]
+    }
+
+    fn is_same(&self) -> bool {
+        self.is_same_kind() && (self.apart < SAME_PLACE || self.is_same_bar)
+    }
+}
+
+/// Prints the share of best poses that are the same when the object is turned at random and the supporter is turned about
+/// the vertical and moved.
+fn turned(cases: &[Case], threads: usize) {
+    let changes = each(cases, threads, change);
+    let found: Vec<_> =
+        cases.iter().zip(&changes).filter(|(_, change)| change.kinds != [None, None]).collect();
+    let share = |title: &str, holds: &dyn Fn(&Change) -> bool| {
+        let count = found.iter().filter(|(_, change)| holds(change)).count();
+        println!("{title}: {count} of {}, {} %", found.len(), wilson(count, found.len()));
+    };
+    println!("{} pairs, {} with a pose in one of the frames", cases.len(), found.len());
+    share("the best pose is of the same kind", &Change::is_same_kind);
+    share("of the same kind at the same place", &Change::is_same);
+    println!("\nOthers:");
+    for (case, Change { kinds, apart, .. }) in found.iter().filter(|(_, change)| !change.is_same()) {
+        let [original, turned] = kinds.map(|kind| kind.map_or("none", Kind::name));
+        println!("{}: {original}, turned {turned}; {:.0} mm apart", case.name, 1000.0 * apart);
+    }
+}
+
+fn change(case: &Case) -> Change {
+    let mut random = Random::named(&case.name, 2);
+    let object_turn = Pose::from_parts(Translation3::identity(), any_rotation(&mut random));
+    let yaw = UnitQuaternion::from_axis_angle(&Vector::z_axis(), random.range(0.0, TAU) as f32);
+    let moved = [0; 3].map(|_| random.range(-MOVED, MOVED) as f32);
+    let supporter_turn = Pose::from_parts(Translation3::from(moved), yaw);
+
+    let place = |pose: &Pose, points: &[[f32; 3]]| -> Vec<[f32; 3]> {
+        points.iter().map(|&point| (pose * Point::from(point)).into()).collect()
+    };
+    let vertices = place(&object_turn, &case.object.vertices);
+    let mesh = Mesh::new(&vertices, &case.object.triangles).expect("a turned mesh is valid");
+    let cloud = case.supporter_cloud();
+    let points = place(&supporter_turn, &cloud.points);
+    let normals = cloud.normals.map(|normals| {
+        normals.iter().map(|&normal| (yaw * Vector::from(normal)).into()).collect::<Vec<[f32; 3]>>()
+    });
+    let cloud = Cloud::new(&points, normals.as_deref()).expect("a turned cloud is valid");
+    let turned = predicted(&mesh, &cloud, &Request::ANY, &params(case), 1);
+
+    let original = best(case, 1);
+    let rest = |poses: &[HangingPose]| poses.first().and_then(|pose| pose.rest);
+    let rests = [rest(&original), rest(&turned)];
+    let kinds = rests.map(|rest| rest.map(|rest| rest.kind));
+    let [Some(original), Some(turned)] = rests else {
+        return Change { kinds, apart: f32::INFINITY, is_same_bar: false };
+    };
+    let back = supporter_turn.inverse();
+    let apart = (main_contact(&original) - back * main_contact(&turned)).norm();
+    let joints = [case.joined(&original.pose), case.joined(&(back * turned.pose * object_turn))];
+    Change { kinds, apart, is_same_bar: joints[0].is_some() && joints[0] == joints[1] }
+}
+
+/// Position of the contact that carries most.
+fn main_contact(rest: &Rest) -> Point {
+    let heaviest = |a: &&Contact, b: &&Contact| a.force.total_cmp(&b.force);
+    rest.contacts().iter().max_by(heaviest).map_or(Point::origin(), |contact| contact.position)
+}
+
+fn any_rotation(random: &mut Random) -> UnitQuaternion<f32> {
+    let parts = [0; 4].map(|_| random.gaussian() as f32);
+    UnitQuaternion::new_normalize(parts.into())
+}
+
+fn any_direction(random: &mut Random) -> Vector {
+    Vector::from([0; 3].map(|_| random.gaussian() as f32)).normalize()
+}
+
+/// What becomes of a best pose that hangs when it is let go as far off as it tolerates.
+struct Off {
+    /// Tolerated displacement, m, and rotation, rad.
+    tolerance: [f32; 2],
+    /// Whether the object hangs after the one and after the other.
+    hangs: [bool; 2],
+}
+
+/// Prints the share of best poses that still hang at the limit of their tolerance.
+fn tolerance(cases: &[Case], threads: usize) {
+    let found: Vec<(&Case, Off)> =
+        cases.iter().zip(each(cases, threads, off)).filter_map(|(case, off)| Some((case, off?))).collect();
+    println!("{} of {} best poses hang", found.len(), cases.len());
+    for (which, name, unit, scale) in
+        [(0, "displaced", "mm", 1000.0), (1, "rotated", "degrees", 180.0 / std::f32::consts::PI)]
+    {
+        let hang = found.iter().filter(|(_, off)| off.hangs[which]).count();
+        let mut tolerated: Vec<f32> = found.iter().map(|(_, off)| scale * off.tolerance[which]).collect();
+        tolerated.sort_by(f32::total_cmp);
+        let at = |share: f64| {
+            tolerated.get((share * tolerated.len() as f64) as usize).copied().unwrap_or_default()
+        };
+        println!(
+            "{name} by the tolerance: {hang} of {} still hang, {} %; tolerance {:.1} {unit} in the median, {:.1} in a tenth",
+            found.len(),
+            wilson(hang, found.len()),
+            at(0.5),
+            at(0.1)
+        );
+    }
+    println!("\nOthers:");
+    for (case, Off { tolerance, hangs }) in found.iter().filter(|(_, off)| off.hangs != [true; 2]) {
+        let [position, rotation] = *tolerance;
+        let falls = |which: usize| if hangs[which] { "hangs" } else { "falls" };
+        println!(
+            "{}: {} displaced by {:.1} mm, {} rotated by {:.1} degrees",
+            case.name,
+            falls(0),
+            1000.0 * position,
+            falls(1),
+            rotation.to_degrees()
+        );
+    }
+}
+
+fn off(case: &Case) -> Option<Off> {
+    let [pose] = best(case, 1).try_into().ok()?;
+    let tolerance = pose.rest?.tolerance;
+    let scene = Scene { tilt: false, ..Scene::new(&case.object, &case.supporter) };
+    let mut world = Bullet::default().world(&scene);
+    let mut hangs = |pose: &Isometry3<f32>| world.judge(&scene, pose).success();
+    if !hangs(&pose.pose) {
+        return None;
+    }
+    let mut random = Random::named(&case.name, 3);
+    let displaced = Translation3::from(any_direction(&mut random) * tolerance.position) * pose.pose;
+    let centre = pose.pose * Point::from(scene.centre_of_mass());
+    let turn = UnitQuaternion::new(any_direction(&mut random) * tolerance.rotation);
+    let about = Translation3::from(centre.coords);
+    let rotated = about * turn * about.inverse() * pose.pose;
+    Some(Off {
+        tolerance: [tolerance.position, tolerance.rotation],
+        hangs: [hangs(&displaced), hangs(&rotated)],
+    })
+}
+
+/// Number of poses per pair whose probabilities are judged.
+const ALL_POSES: usize = 10;
+/// Number of bins of probability.
+const DECILES: usize = 10;
+
+/// A predicted pose and what became of it.
+struct Told {
+    probability: f32,
+    hangs: bool,
+    robust: bool,
+}
+
+/// Prints how often poses of pairs that fit hang, by their probabilities. A pair of real meshes fits if one of its poses
+/// hangs or a random search finds one that does.
+fn probability(cases: &[Case], threads: usize) {
+    let told: Vec<Told> = each(cases, threads, tell).into_iter().flatten().collect();
+    println!("{} poses\n", told.len());
+    println!("| said, % | poses | said mean, % | hang, % | robust, % |\n|---|--:|--:|--:|--:|");
+    for decile in 0..DECILES {
+        let is_in = |told: &&Told| ((told.probability * DECILES as f32) as usize).min(DECILES - 1) == decile;
+        let bin: Vec<&Told> = told.iter().filter(is_in).collect();
+        if bin.is_empty() {
+            continue;
+        }
+        let mean = 100.0 * bin.iter().map(|told| told.probability).sum::<f32>() / bin.len() as f32;
+        println!(
+            "| {} to {} | {} | {mean:.0} | {} | {} |",
+            10 * decile,
+            10 * (decile + 1),
+            bin.len(),
+            wilson(bin.iter().filter(|told| told.hangs).count(), bin.len()),
+            wilson(bin.iter().filter(|told| told.robust).count(), bin.len())
+        );
+    }
+    println!();
+    let outcomes: [(&str, fn(&Told) -> bool); 2] =
+        [("hangs", |told| told.hangs), ("robust", |told| told.robust)];
+    for (name, came) in outcomes {
+        let all = told.len() as f64;
+        let base = told.iter().filter(|told| came(told)).count() as f64 / all;
+        let error = |told: &Told| (f64::from(told.probability) - f64::from(u8::from(came(told)))).powi(2);
+        let brier = told.iter().map(error).sum::<f64>() / all;
+        println!(
+            "{name}: base rate {:.1} %, Brier score {brier:.4}, Brier skill {:.3}, area under the ROC curve {:.3}",
+            100.0 * base,
+            1.0 - brier / (base * (1.0 - base)),
+            roc_area(&told, came)
+        );
+    }
+}
+
+/// Share of the pairs of a pose that comes true and one that does not in which the first is said to be more probable;
+/// equal probabilities count half.
+fn roc_area(told: &[Told], came: fn(&Told) -> bool) -> f64 {
+    let of = |wanted: bool| told.iter().filter(move |told| came(told) == wanted).map(|told| told.probability);
+    let wins: f64 = of(true)
+        .flat_map(|yes| {
+            of(false).map(move |no| if yes > no { 1.0 } else { 0.5 * f64::from(u8::from(yes == no)) })
+        })
+        .sum();
+    wins / (of(true).count() * of(false).count()) as f64
+}
+
+fn tell(case: &Case) -> Vec<Told> {
+    let scene = Scene::new(&case.object, &case.supporter);
+    let mut world = Bullet::default().world(&scene);
+    let poses = best(case, ALL_POSES);
+    let told: Vec<Told> = poses
+        .iter()
+        .filter_map(|pose| {
+            let verdict = world.judge(&scene, &pose.pose);
+            let (hangs, robust) = (verdict.success(), verdict.success() && verdict.robust);
+            Some(Told { probability: pose.rest?.probability, hangs, robust })
+        })
+        .collect();
+    let fits = case.fit == Fit::Yes
+        || case.fit == Fit::Unknown
+            && (told.iter().any(|told| told.hangs) || finds_a_pose(&case.object, &case.supporter, case.seed));
+    if fits { told } else { Vec::new() }
+}
