@@ -31,7 +31,7 @@ static void sizes_and_alignment(void) {
     unsigned char *memory = guarded(64, 0);
     REFUSED(make_object(memory, sizes[i], &mesh, &params, NULL));
     REFUSED(make_supporter(memory, sizes[i], &cloud, &params));
-    REFUSED(hangpose_predict(object, supporter, &params, memory, sizes[i], NULL, &pose, sizeof pose, 1,
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, memory, sizes[i], NULL, &pose, sizeof pose, 1,
                              &found, &detail));
     REFUSED(hangpose_mesh_sample(&mesh, 0, memory, sizes[i], *points, *normals, 10, &detail));
     release(memory, 64, 0);
@@ -104,16 +104,16 @@ static void null_and_misaligned(void) {
     REFUSED(predict(bad[i], supporter, &params));
     REFUSED(predict(object, bad[i], &params));
     REFUSED(predict(object, supporter, bad[i]));
-    REFUSED(hangpose_predict(object, supporter, &params, NULL, predict_size, NULL, &pose, sizeof pose, 1,
-                             &found, &detail));
-    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, bad[i], sizeof pose, 1,
-                             &found, &detail));
-    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose, 1,
-                             bad[i], &detail));
-    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose, 0,
-                             &found, &detail));
-    REFUSED(
-        hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, 1, 1, &found, &detail));
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, NULL, predict_size, NULL, &pose, sizeof pose,
+                             1, &found, &detail));
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, bad[i], sizeof pose,
+                             1, &found, &detail));
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizeof pose,
+                             1, bad[i], &detail));
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizeof pose,
+                             0, &found, &detail));
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, 1, 1, &found,
+                             &detail));
     // An error is returned without a detail too, and an invalid detail is itself refused.
     REFUSED(hangpose_object_create(work, 0, bad[i], bad[i], NULL, bad[i], NULL));
     hangpose_detail small = {.struct_size = 4};
@@ -133,8 +133,8 @@ static void null_and_misaligned(void) {
   hangpose_detail *odd_detail = bad[1];
   REFUSED(hangpose_object_create(object_memory, 0, &mesh, &params, odd_monitor, &o, &detail));
   REFUSED(hangpose_supporter_create(supporter_memory, 0, &cloud, &params, odd_monitor, &s, &detail));
-  REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, odd_monitor, &pose, sizeof pose, 1,
-                           &found, &detail));
+  REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, odd_monitor, &pose,
+                           sizeof pose, 1, &found, &detail));
   REFUSED(hangpose_object_get_info(object, &object_info, odd_detail));
   CHECK(hangpose_object_get_info(object, &object_info, NULL) == HANGPOSE_OK);
   hangpose_monitor_cancel(NULL);
@@ -176,10 +176,10 @@ static void struct_sizes(void) {
     REFUSED(hangpose_supporter_get_site(supporter, 0, &supporter_site, &detail));
     REFUSED(hangpose_object_get_contact(object, 0, &object_contact, &detail));
     REFUSED(hangpose_supporter_get_contact(supporter, 0, &supporter_contact, &detail));
-    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose, 1,
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizeof pose,
+                             1, &found, &detail));
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizes[i], 1,
                              &found, &detail));
-    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizes[i], 1, &found,
-                             &detail));
   }
   CHECK(is_unharmed());
 }
@@ -200,7 +200,7 @@ static void counts_and_numbers(void) {
     REFUSED(hangpose_mesh_sample(&mesh, 0, work, predict_size, *points, *normals, counts[i], &detail));
     hangpose_pose pose;
     hangpose_prediction found = {.struct_size = sizeof found};
-    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose,
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizeof pose,
                              counts[i], &found, &detail));
     CHECK(hangpose_sample_bytes(counts[i]) > 0);
   }
@@ -299,15 +299,15 @@ static void overlaps(void) {
   (void)s;
   // Memory of the models as output.
   *d_inside = detail;
-  CHECK(hangpose_predict(object, supporter, &params, object_memory, object_size, NULL, &pose, sizeof pose, 1,
-                         &found, NULL) == HANGPOSE_ERROR_OVERLAP);
-  CHECK(hangpose_predict(object, supporter, &params, work, predict_size, NULL,
+  CHECK(hangpose_predict(object, supporter, NULL, &params, object_memory, object_size, NULL, &pose,
+                         sizeof pose, 1, &found, NULL) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL,
                          (void *)(supporter_memory + 4096), sizeof pose, 1, &found,
                          NULL) == HANGPOSE_ERROR_OVERLAP);
-  CHECK(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose,
+  CHECK(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizeof pose,
                          UINT32_MAX / 2, &found, NULL) < 0);
-  CHECK(hangpose_predict(object, supporter, &params, work, predict_size, NULL, (void *)&found, sizeof pose, 1,
-                         &found, NULL) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, (void *)&found,
+                         sizeof pose, 1, &found, NULL) == HANGPOSE_ERROR_OVERLAP);
   c = cloud;
   c.points = (float *)(void *)(supporter_memory + 4096);
   CHECK(hangpose_supporter_update(supporter, &c, &params, NULL, &detail) == HANGPOSE_ERROR_OVERLAP);
@@ -406,8 +406,8 @@ static void *predict_again_and_again(void *tally) {
     hangpose_pose poses[POSES];
     hangpose_prediction found = {.struct_size = sizeof found};
     hangpose_detail said = {.struct_size = sizeof said};
-    const hangpose_status status = hangpose_predict(object, supporter, &params, mine, predict_size, &shared,
-                                                    poses, sizeof *poses, POSES, &found, &said);
+    const hangpose_status status = hangpose_predict(object, supporter, NULL, &params, mine, predict_size,
+                                                    &shared, poses, sizeof *poses, POSES, &found, &said);
     nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);  // leaves time for an update
     if (status == HANGPOSE_OK) ++((int *)tally)[0];
     if (status == HANGPOSE_OK && memcmp(poses, right, right_count * sizeof *poses) != 0) ++((int *)tally)[1];
