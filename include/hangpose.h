@@ -5,7 +5,8 @@
 //
 // Use. (1) hangpose_params_init. (2) hangpose_object_create from a triangle mesh and hangpose_supporter_create from
 // a point cloud, once each. (3) hangpose_predict. poses[0] is the best: place the object at its `position` and
-// `quaternion` and release it. examples-c/01_static_memory.c is a complete program.
+// `quaternion` and release it. examples-c/01_static_memory.c is a complete program. A hangpose_request says how and where
+// the object shall hang and what it must not touch: examples-c/09_requests.cpp.
 //
 // From depth images. The mesh of an object that is held alone: hangpose_volume_room gives the crop box of a dense
 // volume; then hangpose_volume_create, hangpose_volume_integrate once for each image, hangpose_volume_complete and

@@ -3,6 +3,7 @@
 // sanitizers, and under valgrind.
 #include <hangpose.h>
 #include <pthread.h>
+#include <stddef.h>
 #include <time.h>
 
 #include "depth.h"
@@ -321,6 +322,103 @@ static void overlaps(void) {
   CHECK(is_unharmed());
 }
 
+static hangpose_status ask(const hangpose_request *request) {
+  hangpose_pose poses[POSES];
+  hangpose_prediction found = {.struct_size = sizeof found};
+  return hangpose_predict(object, supporter, request, &params, work, predict_size, NULL, poses, sizeof *poses,
+                          POSES, &found, &detail);
+}
+
+static void requests(void) {
+  static const uint32_t indices[2] = {0, UINT32_MAX};
+  static unsigned char odd[sizeof(hangpose_request) + 8];
+  const uint32_t sizes[] = {0, 1, 4, 1000, UINT32_MAX};
+  const uint32_t words[] = {0xFFFFFFFF, 0x7F800000, 0xFF800000, 0x80000001, 0x4B000000};
+  hangpose_request good, r;
+  CHECK(hangpose_request_init(&good, sizeof good, &detail) == HANGPOSE_OK);
+  REFUSED(hangpose_request_init(NULL, sizeof good, &detail));
+  REFUSED(hangpose_request_init((void *)(odd + 1), sizeof good, &detail));
+  REFUSED(hangpose_request_init((void *)&detail, sizeof good, &detail));
+  REFUSED(ask((void *)(odd + 1)));
+  CHECK(ask(&good) == HANGPOSE_OK);
+  for (int i = 0; i < 5; ++i) {
+    REFUSED(hangpose_request_init(&r, sizes[i], &detail));
+    r = good;
+    r.struct_size = sizes[i];
+    REFUSED(ask(&r));
+  }
+  // Every word before the pointers in turn: a value in its range is accepted, any other is named in the
+  // detail.
+  good.has_approach = 1;
+  good.approach_direction[2] = -1;
+  good.on.shape = HANGPOSE_REGION_BOX;
+  for (size_t at = 1; at < (offsetof(hangpose_request, on) + offsetof(hangpose_region, points)) / 4; ++at) {
+    for (int i = 0; i < 5; ++i) {
+      r = good;
+      memcpy((char *)&r + 4 * at, &words[i], 4);
+      CHECK(ask(&r) >= 0 || strncmp(detail.field, "request.", 8) == 0);
+    }
+  }
+  good.has_approach = 0;
+  good.on = (hangpose_region){.shape = HANGPOSE_REGION_TRIANGLES,
+                              .radius = 0.01f,
+                              .points = *vertices,
+                              .point_count = RING_VERTICES,
+                              .triangles = *triangles,
+                              .triangle_count = RING_TRIANGLES,
+                              .indices = indices,
+                              .index_count = 1};
+  CHECK(ask(&good) >= 0);
+  for (int i = 0; i < 2; ++i) {
+    const void *const bad = i == 0 ? NULL : odd + 1;
+    r = good, r.on.points = bad;
+    REFUSED(ask(&r));
+    r = good, r.on.triangles = bad;
+    REFUSED(ask(&r));
+    r = good, r.on.indices = bad;
+    REFUSED(ask(&r));
+    r = good, r.by = good.on, r.by.points = bad;
+    REFUSED(ask(&r));
+    r = good, r.scene_points = bad, r.scene_point_count = 1;
+    REFUSED(ask(&r));
+    r = good, r.hung = bad, r.hung_count = 1;
+    REFUSED(ask(&r));
+    r.hung_count = UINT32_MAX;
+    REFUSED(ask(&r));
+  }
+  r = good, r.on.index_count = 2;
+  CHECK(ask(&r) == HANGPOSE_ERROR_INDEX && detail.index == 1 && detail.value == UINT32_MAX);
+  // What hangs already, and memory of the call as input.
+  hangpose_hung hung = {.object = object, .position = {0, 0, 1}, .quaternion = {0, 0, 0, 1}};
+  hangpose_request_init(&good, sizeof good, NULL);
+  good.hung = &hung;
+  good.hung_count = 1;
+  CHECK(ask(&good) == HANGPOSE_OK);
+  hung.object = (void *)supporter;
+  CHECK(ask(&good) == HANGPOSE_ERROR_HANDLE && detail.index == 0);
+  hung.object = NULL;
+  CHECK(ask(&good) == HANGPOSE_ERROR_NULL);
+  good.hung_count = 0;
+  unsigned char *before = work;
+  work = guarded(predict_size, 0);
+  good.scene_points = (float *)(void *)work;
+  good.scene_point_count = 1;
+  CHECK(ask(&good) == HANGPOSE_ERROR_OVERLAP);
+  good.scene_points = NULL, good.scene_point_count = 0, good.by.points = (float *)(void *)work;
+  good.by.point_count = 1;
+  CHECK(ask(&good) == HANGPOSE_ERROR_OVERLAP);
+  good.by.points = NULL, good.hung = (void *)work, good.hung_count = 1;
+  memcpy(work, &(hangpose_hung){object, {0, 0, 1}, {0, 0, 0, 1}}, sizeof hung);
+  CHECK(ask(&good) == HANGPOSE_ERROR_OVERLAP);
+  hangpose_request *inside = (void *)work;
+  hangpose_request_init(inside, sizeof *inside, NULL);
+  CHECK(ask(inside) == HANGPOSE_ERROR_OVERLAP);
+  release(work, predict_size, 0);
+  work = before;
+  CHECK(hangpose_kind_string(UINT32_MAX) != NULL);
+  CHECK(is_unharmed());
+}
+
 static void handles(void) {
   unsigned char *memory = guarded(object_size, 0);
   hangpose_monitor monitor;
@@ -442,6 +540,7 @@ int main(void) {
   struct_sizes();
   counts_and_numbers();
   overlaps();
+  requests();
   handles();
   other_params();
   updates();
