@@ -3,10 +3,10 @@
 //
 // Generated from ffi/src by `make header`. Edit the sources, not this file.
 //
-// Use. (1) hangpose_params_init. (2) hangpose_object_create from a triangle mesh and hangpose_supporter_create from
-// a point cloud, once each. (3) hangpose_predict. poses[0] is the best: place the object at its `position` and
-// `quaternion` and release it. examples-c/01_static_memory.c is a complete program. A hangpose_request says how and where
-// the object shall hang and what it must not touch: examples-c/09_requests.cpp.
+// Use. (1) hangpose_params_init. (2) hangpose_object_create from a triangle mesh and hangpose_supporter_create from a
+// point cloud, once each. (3) hangpose_predict. poses[0] is the best: place the object at its `position` and
+// `quaternion` and release it. examples-c/01_static_memory.c is a complete program. A hangpose_request says how and
+// where the object shall hang and what it must not touch: examples-c/09_requests.cpp.
 //
 // From depth images. The mesh of an object that is held alone: hangpose_volume_room gives the crop box of a dense
 // volume; then hangpose_volume_create, hangpose_volume_integrate once for each image, hangpose_volume_complete and
@@ -484,8 +484,8 @@ typedef uint32_t hangpose_kind;
 // What a region is made of, one of HANGPOSE_REGION_*.
 typedef uint32_t hangpose_region_shape;
 
-// A part of an object or of a supporter, in its coordinates; zeros for all of it. Part of hangpose_request. The library
-// keeps no pointer to the arrays after the call.
+// A part of an object or of a supporter, in its coordinates; zeros for all of it. Part of hangpose_request. The
+// library keeps no pointer to the arrays after the call.
 typedef struct hangpose_region {
   // One of HANGPOSE_REGION_*.
   hangpose_region_shape shape;
@@ -501,13 +501,13 @@ typedef struct hangpose_region {
   uint32_t triangle_count;
   // Number of indices, at least 1 if `indices` is not null.
   uint32_t index_count;
-  // Array of point_count rows of x, y, z: metres, each within +-1,000,000. With HANGPOSE_REGION_TRIANGLES these are the
-  // vertices of the mesh.
+  // Array of point_count rows of x, y, z: metres, each within +-1,000,000. With HANGPOSE_REGION_TRIANGLES these are
+  // the vertices of the mesh.
   const float *points;
   // Array of triangle_count rows of three indices of points, counted from 0.
   const uint32_t *triangles;
-  // Array of index_count indices, counted from 0, of the points or triangles that count. With HANGPOSE_REGION_POINTS it
-  // may be null if index_count is 0: all points count.
+  // Array of index_count indices, counted from 0, of the points or triangles that count. With HANGPOSE_REGION_POINTS
+  // it may be null if index_count is 0: all points count.
   const uint32_t *indices;
 } hangpose_region;
 
@@ -517,8 +517,8 @@ typedef struct hangpose_hung {
   const struct hangpose_object *object;
   // Its pose: x, y, z of its origin, metres, in supporter coordinates, each within +-1,000,000.
   float position[3];
-  // Its pose: x, y, z, w of the quaternion that rotates object coordinates into supporter coordinates; any length but
-  // zero.
+  // Its pose: x, y, z, w of the quaternion that rotates object coordinates into supporter coordinates; any length
+  // but zero.
   float quaternion[4];
 } hangpose_hung;
 
@@ -530,12 +530,12 @@ typedef struct hangpose_request {
   uint32_t struct_size;
   // The kinds that are given at all: HANGPOSE_KIND_*, joined with |, at least one. Default: HANGPOSE_KIND_ALL.
   hangpose_kind allow;
-  // The kinds that come first: HANGPOSE_KIND_*, joined with |, or 0. Of the others, HANGPOSE_KIND_CAPPED comes before
-  // HANGPOSE_KIND_BALANCED. A pose of a kind that comes later is ranked before one that comes first only if it is much
-  // more probable. Default: HANGPOSE_KIND_THREADED | HANGPOSE_KIND_HOOKED.
+  // The kinds that come first: HANGPOSE_KIND_*, joined with |, or 0. Of the others, HANGPOSE_KIND_CAPPED comes
+  // before HANGPOSE_KIND_BALANCED. A pose of a kind that comes later is ranked before one that comes first only if
+  // it is much more probable. Default: HANGPOSE_KIND_THREADED | HANGPOSE_KIND_HOOKED.
   hangpose_kind prefer;
-  // 1 if the object must come to its release pose on a straight way without a collision, as the next three fields say;
-  // 0, the default, for any way.
+  // 1 if the object must come to its release pose on a straight way without a collision, as the next three fields
+  // say; 0, the default, for any way.
   uint32_t has_approach;
   // x, y, z of the direction in which the object moves, in supporter coordinates; any length but zero.
   float approach_direction[3];
@@ -543,8 +543,8 @@ typedef struct hangpose_request {
   float approach_angle;
   // Length of the way that is free, metres; 0 to 10.
   float approach_length;
-  // Two poses of the same kind differ by this distance of the centres of mass or by distinct_rotation, or by more, metres;
-  // 0 to 10. Default: 0.02.
+  // Two poses of the same kind differ by this distance of the centres of mass or by distinct_rotation, or by more,
+  // metres; 0 to 10. Default: 0.02.
   float distinct_position;
   // Angle of the rotation from one pose to the other, radians; 0 to pi. Default: 0.35.
   float distinct_rotation;
@@ -552,18 +552,18 @@ typedef struct hangpose_request {
   uint32_t scene_point_count;
   // Number of objects that hang already; 0, the default, to HANGPOSE_MAX_HUNG.
   uint32_t hung_count;
-  // The part of the supporter that carries the object: at least half of its weight rests there. In supporter coordinates.
-  // Default: everywhere.
+  // The part of the supporter that carries the object: at least half of its weight rests there. In supporter
+  // coordinates. Default: everywhere.
   struct hangpose_region on;
-  // The part of the object by which it hangs: at least half of its weight rests on it. In object coordinates. Default:
-  // everywhere.
+  // The part of the object by which it hangs: at least half of its weight rests on it. In object coordinates.
+  // Default: everywhere.
   struct hangpose_region by;
-  // Array of scene_point_count rows of x, y, z: points of things near the supporter, metres, in supporter coordinates, each
-  // within +-1,000,000. The object does not touch them and never hangs on them. They are not simulated. May be null if
-  // scene_point_count is 0.
+  // Array of scene_point_count rows of x, y, z: points of things near the supporter, metres, in supporter
+  // coordinates, each within +-1,000,000. The object does not touch them and never hangs on them. They are not
+  // simulated. May be null if scene_point_count is 0.
   const float *scene_points;
-  // Array of hung_count objects that hang on the supporter already. As the scene, with their exact shapes. May be null if
-  // hung_count is 0.
+  // Array of hung_count objects that hang on the supporter already. As the scene, with their exact shapes. May be
+  // null if hung_count is 0.
   const struct hangpose_hung *hung;
 } hangpose_request;
 
@@ -644,7 +644,8 @@ typedef struct hangpose_pose {
   // there is no room.
   float clearance;
   // Distance that the object may be away from the release pose in any direction when it is let go, metres: it still
-  // touches nothing, and comes to rest as it would have. This error and the next add up: half of either is fine together.
+  // touches nothing, and comes to rest as it would have. This error and the next add up: half of either is fine
+  // together.
   float tolerance_position;
   // Angle about the centre of mass by which the object may be rotated away from the release pose, radians.
   float tolerance_rotation;
@@ -720,7 +721,8 @@ typedef struct hangpose_prediction {
   uint32_t settling_firm_as_preferred;
   // Number of poses that touch the scene or an object that hangs already.
   uint32_t settling_in_scene;
-  // Number of rest poses that hang on or by another region than was asked for, and 1 if the regions have no place for any.
+  // Number of rest poses that hang on or by another region than was asked for, and 1 if the regions have no place
+  // for any.
   uint32_t settling_outside;
   // Number of rest poses that hang in a way that is not allowed.
   uint32_t settling_other_kind;
@@ -879,8 +881,8 @@ typedef struct hangpose_points_settings {
 // Every triangle of the mesh has zero area.
 #define HANGPOSE_ERROR_DEGENERATE (-13)
 
-// The params require a signed distance field, but the object was analysed with voxels = 0, or an object that hangs already
-// was.
+// The params require a signed distance field, but the object was analysed with voxels = 0, or an object that hangs
+// already was.
 #define HANGPOSE_ERROR_NO_DISTANCE_FIELD (-14)
 
 // The result does not fit into the caller's array or into the blocks of the volume. hangpose_detail.minimum is the
@@ -940,7 +942,8 @@ typedef struct hangpose_points_settings {
 // The object stays, but hangs in another way than those that are allowed: hangpose_request.allow.
 #define HANGPOSE_STAGE_OTHER_KIND 14
 
-// The object stays, but no straight way in the direction that was asked for leads to the pose: hangpose_request.has_approach.
+// The object stays, but no straight way in the direction that was asked for leads to the pose:
+// hangpose_request.has_approach.
 #define HANGPOSE_STAGE_NO_APPROACH 15
 
 // The library's own method.
@@ -964,8 +967,8 @@ typedef struct hangpose_points_settings {
 // Every contact candidate of the object on every contact candidate of the supporter.
 #define HANGPOSE_CANDIDATES_CONTACTS 1
 
-// A bar of the supporter runs through a loop of the object. The two are linked: no motion frees the object but one past
-// the end of the bar.
+// A bar of the supporter runs through a loop of the object. The two are linked: no motion frees the object but one
+// past the end of the bar.
 #define HANGPOSE_KIND_THREADED 1
 
 // An open hook of the one holds the other: the object is caught on both sides of the bar, and comes free by lifting.
@@ -1147,18 +1150,18 @@ hangpose_status hangpose_supporter_get_contact(const struct hangpose_supporter *
                                                struct hangpose_supporter_contact *contact,
                                                struct hangpose_detail *detail);
 
-// Returns the name of one kind: "threaded", "hooked", "capped" or "balanced", and "no kind" for anything else; a static
-// string, never null.
+// Returns the name of one kind: "threaded", "hooked", "capped" or "balanced", and "no kind" for anything else; a
+// static string, never null.
 const char *hangpose_kind_string(hangpose_kind kind);
 
-// Sets `request` to anything anywhere, as a null request of hangpose_predict. `struct_size` is sizeof(hangpose_request).
-// Returns HANGPOSE_OK, or an error.
+// Sets `request` to anything anywhere, as a null request of hangpose_predict. `struct_size` is
+// sizeof(hangpose_request). Returns HANGPOSE_OK, or an error.
 hangpose_status hangpose_request_init(struct hangpose_request *request,
                                       size_t struct_size,
                                       struct hangpose_detail *detail);
 
-// Finds poses in which `object` hangs on `supporter` as `request` asks and writes the best to `poses`, best first. Both
-// models must have been analysed with these `params`. `request` may be null: anything anywhere.
+// Finds poses in which `object` hangs on `supporter` as `request` asks and writes the best to `poses`, best first.
+// Both models must have been analysed with these `params`. `request` may be null: anything anywhere.
 //
 // `memory` is working memory of at least hangpose_predict_bytes, needed during the call only. `monitor` may be
 // null. `poses` is an array of `pose_capacity` structs, at least 1; a larger capacity may take more time.

@@ -5,8 +5,8 @@
 //! test the conversion from the core's types to the C structs, because both sides use it; tests/conversions.rs does.
 //!
 //! Each file holds little-endian words of 32 bits: profile; number of vertices, triangles and points; the three arrays
-//! and the normals; the expected status; the words of `hangpose_prediction` from `pose_count` to `settling_no_approach`, then
-//! its work; and for each pose the words of `hangpose_pose` after `struct_size`.
+//! and the normals; the expected status; the words of `hangpose_prediction` from `pose_count` to
+//! `settling_no_approach`, then its work; and for each pose the words of `hangpose_pose` after `struct_size`.
 
 use hangpose::geometry::{Cloud, Mesh};
 use hangpose::hanging::{HangingPose, Request};

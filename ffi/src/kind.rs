@@ -6,8 +6,8 @@ use hangpose_core::mechanics::{Kind, Kinds};
 /// the shapes alone. A bar is the part of the supporter at a contact that carries the object.
 pub type hangpose_kind = u32;
 
-/// A bar of the supporter runs through a loop of the object. The two are linked: no motion frees the object but one past
-/// the end of the bar.
+/// A bar of the supporter runs through a loop of the object. The two are linked: no motion frees the object but one
+/// past the end of the bar.
 pub const HANGPOSE_KIND_THREADED: hangpose_kind = 1;
 /// An open hook of the one holds the other: the object is caught on both sides of the bar, and comes free by lifting.
 pub const HANGPOSE_KIND_HOOKED: hangpose_kind = 2;
@@ -18,8 +18,8 @@ pub const HANGPOSE_KIND_BALANCED: hangpose_kind = 8;
 /// Every kind.
 pub const HANGPOSE_KIND_ALL: hangpose_kind = 15;
 
-/// Returns the name of one kind: "threaded", "hooked", "capped" or "balanced", and "no kind" for anything else; a static
-/// string, never null.
+/// Returns the name of one kind: "threaded", "hooked", "capped" or "balanced", and "no kind" for anything else; a
+/// static string, never null.
 #[unsafe(no_mangle)]
 pub extern "C" fn hangpose_kind_string(kind: hangpose_kind) -> *const c_char {
     kind_text(kind).as_ptr()

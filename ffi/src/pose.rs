@@ -97,7 +97,8 @@ pub struct hangpose_pose {
     /// there is no room.
     pub clearance: f32,
     /// Distance that the object may be away from the release pose in any direction when it is let go, metres: it still
-    /// touches nothing, and comes to rest as it would have. This error and the next add up: half of either is fine together.
+    /// touches nothing, and comes to rest as it would have. This error and the next add up: half of either is fine
+    /// together.
     pub tolerance_position: f32,
     /// Angle about the centre of mass by which the object may be rotated away from the release pose, radians.
     pub tolerance_rotation: f32,

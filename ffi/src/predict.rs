@@ -66,7 +66,8 @@ pub struct hangpose_prediction {
     pub settling_firm_as_preferred: u32,
     /// Number of poses that touch the scene or an object that hangs already.
     pub settling_in_scene: u32,
-    /// Number of rest poses that hang on or by another region than was asked for, and 1 if the regions have no place for any.
+    /// Number of rest poses that hang on or by another region than was asked for, and 1 if the regions have no place
+    /// for any.
     pub settling_outside: u32,
     /// Number of rest poses that hang in a way that is not allowed.
     pub settling_other_kind: u32,
@@ -93,8 +94,8 @@ pub(crate) fn pose_bytes(count: u32) -> usize {
     size_of::<HangingPose>().saturating_mul(count as usize).saturating_add(align_of::<HangingPose>() - 1)
 }
 
-/// Finds poses in which `object` hangs on `supporter` as `request` asks and writes the best to `poses`, best first. Both
-/// models must have been analysed with these `params`. `request` may be null: anything anywhere.
+/// Finds poses in which `object` hangs on `supporter` as `request` asks and writes the best to `poses`, best first.
+/// Both models must have been analysed with these `params`. `request` may be null: anything anywhere.
 ///
 /// `memory` is working memory of at least hangpose_predict_bytes, needed during the call only. `monitor` may be
 /// null. `poses` is an array of `pose_capacity` structs, at least 1; a larger capacity may take more time.

@@ -15,8 +15,8 @@ pub const HANGPOSE_REGION_POINTS: hangpose_region_shape = 2;
 /// What is within hangpose_region.radius of triangles of a mesh.
 pub const HANGPOSE_REGION_TRIANGLES: hangpose_region_shape = 3;
 
-/// A part of an object or of a supporter, in its coordinates; zeros for all of it. Part of hangpose_request. The library
-/// keeps no pointer to the arrays after the call.
+/// A part of an object or of a supporter, in its coordinates; zeros for all of it. Part of hangpose_request. The
+/// library keeps no pointer to the arrays after the call.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_region {
@@ -34,13 +34,13 @@ pub struct hangpose_region {
     pub triangle_count: u32,
     /// Number of indices, at least 1 if `indices` is not null.
     pub index_count: u32,
-    /// Array of point_count rows of x, y, z: metres, each within +-1,000,000. With HANGPOSE_REGION_TRIANGLES these are the
-    /// vertices of the mesh.
+    /// Array of point_count rows of x, y, z: metres, each within +-1,000,000. With HANGPOSE_REGION_TRIANGLES these are
+    /// the vertices of the mesh.
     pub points: *const f32,
     /// Array of triangle_count rows of three indices of points, counted from 0.
     pub triangles: *const u32,
-    /// Array of index_count indices, counted from 0, of the points or triangles that count. With HANGPOSE_REGION_POINTS it
-    /// may be null if index_count is 0: all points count.
+    /// Array of index_count indices, counted from 0, of the points or triangles that count. With HANGPOSE_REGION_POINTS
+    /// it may be null if index_count is 0: all points count.
     pub indices: *const u32,
 }
 

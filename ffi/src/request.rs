@@ -23,8 +23,8 @@ pub struct hangpose_hung {
     pub object: *const hangpose_object,
     /// Its pose: x, y, z of its origin, metres, in supporter coordinates, each within +-1,000,000.
     pub position: [f32; 3],
-    /// Its pose: x, y, z, w of the quaternion that rotates object coordinates into supporter coordinates; any length but
-    /// zero.
+    /// Its pose: x, y, z, w of the quaternion that rotates object coordinates into supporter coordinates; any length
+    /// but zero.
     pub quaternion: [f32; 4],
 }
 
@@ -38,12 +38,12 @@ pub struct hangpose_request {
     pub struct_size: u32,
     /// The kinds that are given at all: HANGPOSE_KIND_*, joined with |, at least one. Default: HANGPOSE_KIND_ALL.
     pub allow: hangpose_kind,
-    /// The kinds that come first: HANGPOSE_KIND_*, joined with |, or 0. Of the others, HANGPOSE_KIND_CAPPED comes before
-    /// HANGPOSE_KIND_BALANCED. A pose of a kind that comes later is ranked before one that comes first only if it is much
-    /// more probable. Default: HANGPOSE_KIND_THREADED | HANGPOSE_KIND_HOOKED.
+    /// The kinds that come first: HANGPOSE_KIND_*, joined with |, or 0. Of the others, HANGPOSE_KIND_CAPPED comes
+    /// before HANGPOSE_KIND_BALANCED. A pose of a kind that comes later is ranked before one that comes first only if
+    /// it is much more probable. Default: HANGPOSE_KIND_THREADED | HANGPOSE_KIND_HOOKED.
     pub prefer: hangpose_kind,
-    /// 1 if the object must come to its release pose on a straight way without a collision, as the next three fields say;
-    /// 0, the default, for any way.
+    /// 1 if the object must come to its release pose on a straight way without a collision, as the next three fields
+    /// say; 0, the default, for any way.
     pub has_approach: u32,
     /// x, y, z of the direction in which the object moves, in supporter coordinates; any length but zero.
     pub approach_direction: [f32; 3],
@@ -51,8 +51,8 @@ pub struct hangpose_request {
     pub approach_angle: f32,
     /// Length of the way that is free, metres; 0 to 10.
     pub approach_length: f32,
-    /// Two poses of the same kind differ by this distance of the centres of mass or by distinct_rotation, or by more, metres;
-    /// 0 to 10. Default: 0.02.
+    /// Two poses of the same kind differ by this distance of the centres of mass or by distinct_rotation, or by more,
+    /// metres; 0 to 10. Default: 0.02.
     pub distinct_position: f32,
     /// Angle of the rotation from one pose to the other, radians; 0 to pi. Default: 0.35.
     pub distinct_rotation: f32,
@@ -60,18 +60,18 @@ pub struct hangpose_request {
     pub scene_point_count: u32,
     /// Number of objects that hang already; 0, the default, to HANGPOSE_MAX_HUNG.
     pub hung_count: u32,
-    /// The part of the supporter that carries the object: at least half of its weight rests there. In supporter coordinates.
-    /// Default: everywhere.
+    /// The part of the supporter that carries the object: at least half of its weight rests there. In supporter
+    /// coordinates. Default: everywhere.
     pub on: hangpose_region,
-    /// The part of the object by which it hangs: at least half of its weight rests on it. In object coordinates. Default:
-    /// everywhere.
+    /// The part of the object by which it hangs: at least half of its weight rests on it. In object coordinates.
+    /// Default: everywhere.
     pub by: hangpose_region,
-    /// Array of scene_point_count rows of x, y, z: points of things near the supporter, metres, in supporter coordinates, each
-    /// within +-1,000,000. The object does not touch them and never hangs on them. They are not simulated. May be null if
-    /// scene_point_count is 0.
+    /// Array of scene_point_count rows of x, y, z: points of things near the supporter, metres, in supporter
+    /// coordinates, each within +-1,000,000. The object does not touch them and never hangs on them. They are not
+    /// simulated. May be null if scene_point_count is 0.
     pub scene_points: *const f32,
-    /// Array of hung_count objects that hang on the supporter already. As the scene, with their exact shapes. May be null if
-    /// hung_count is 0.
+    /// Array of hung_count objects that hang on the supporter already. As the scene, with their exact shapes. May be
+    /// null if hung_count is 0.
     pub hung: *const hangpose_hung,
 }
 
@@ -80,8 +80,8 @@ unsafe impl Public for hangpose_request {
     const NAME: &'static str = "request";
 }
 
-/// Sets `request` to anything anywhere, as a null request of hangpose_predict. `struct_size` is sizeof(hangpose_request).
-/// Returns HANGPOSE_OK, or an error.
+/// Sets `request` to anything anywhere, as a null request of hangpose_predict. `struct_size` is
+/// sizeof(hangpose_request). Returns HANGPOSE_OK, or an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_request_init(
     request: *mut hangpose_request,

@@ -44,8 +44,8 @@ pub const HANGPOSE_ERROR_VALUE: hangpose_status = -11;
 pub const HANGPOSE_ERROR_INDEX: hangpose_status = -12;
 /// Every triangle of the mesh has zero area.
 pub const HANGPOSE_ERROR_DEGENERATE: hangpose_status = -13;
-/// The params require a signed distance field, but the object was analysed with voxels = 0, or an object that hangs already
-/// was.
+/// The params require a signed distance field, but the object was analysed with voxels = 0, or an object that hangs
+/// already was.
 pub const HANGPOSE_ERROR_NO_DISTANCE_FIELD: hangpose_status = -14;
 /// The result does not fit into the caller's array or into the blocks of the volume. hangpose_detail.minimum is the
 /// least capacity that may hold it.
@@ -90,7 +90,8 @@ pub const HANGPOSE_STAGE_OUTSIDE_REGION: hangpose_stage = 12;
 pub const HANGPOSE_STAGE_IN_SCENE: hangpose_stage = 13;
 /// The object stays, but hangs in another way than those that are allowed: hangpose_request.allow.
 pub const HANGPOSE_STAGE_OTHER_KIND: hangpose_stage = 14;
-/// The object stays, but no straight way in the direction that was asked for leads to the pose: hangpose_request.has_approach.
+/// The object stays, but no straight way in the direction that was asked for leads to the pose:
+/// hangpose_request.has_approach.
 pub const HANGPOSE_STAGE_NO_APPROACH: hangpose_stage = 15;
 
 pub(crate) fn stage(stage: Stage) -> hangpose_stage {
