@@ -45,8 +45,8 @@ int main(void) {
     return fail();
 
   hangpose_prediction found = {.struct_size = sizeof found};
-  const hangpose_status status = hangpose_predict(ring, peg, &params, work_memory, sizeof work_memory, NULL,
-                                                  poses, sizeof *poses, POSES, &found, &detail);
+  const hangpose_status status = hangpose_predict(ring, peg, NULL, &params, work_memory, sizeof work_memory,
+                                                  NULL, poses, sizeof *poses, POSES, &found, &detail);
   if (status < 0) return fail();
   if (status == HANGPOSE_REJECTED) {
     printf("nothing hangs: %s\n", hangpose_stage_string(found.stage));

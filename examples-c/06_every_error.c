@@ -54,8 +54,8 @@ static hangpose_status predict(const hangpose_supporter *on, unsigned char *memo
   hangpose_pose *mine = poses[memory == other_work];
   hangpose_prediction found = {.struct_size = sizeof found};
   hangpose_detail *said = memory == other_work ? NULL : &detail;
-  return hangpose_predict(ring, on, &params, memory, sizeof work, watch, mine, sizeof *mine, capacity, &found,
-                          said);
+  return hangpose_predict(ring, on, NULL, &params, memory, sizeof work, watch, mine, sizeof *mine, capacity,
+                          &found, said);
 }
 
 // Predicts in a loop, so that the supporter is in use.

@@ -3,9 +3,10 @@
 //
 // Generated from ffi/src by `make header`. Edit the sources, not this file.
 //
-// Use. (1) hangpose_params_init. (2) hangpose_object_create from a triangle mesh and hangpose_supporter_create from
-// a point cloud, once each. (3) hangpose_predict. poses[0] is the best: place the object at its `position` and
-// `quaternion` and release it. examples-c/01_static_memory.c is a complete program.
+// Use. (1) hangpose_params_init. (2) hangpose_object_create from a triangle mesh and hangpose_supporter_create from a
+// point cloud, once each. (3) hangpose_predict. poses[0] is the best: place the object at its `position` and
+// `quaternion` and release it. examples-c/01_static_memory.c is a complete program. A hangpose_request says how and
+// where the object shall hang and what it must not touch: examples-c/09_requests.cpp.
 //
 // From depth images. The mesh of an object that is held alone: hangpose_volume_room gives the crop box of a dense
 // volume; then hangpose_volume_create, hangpose_volume_integrate once for each image, hangpose_volume_complete and
@@ -70,9 +71,9 @@
 #define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 19
 #define HANGPOSE_SUPPORTER_BYTES_AT_LEAST 58368
 #define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 506
-#define HANGPOSE_PREDICT_BYTES_AT_LEAST 43008
+#define HANGPOSE_PREDICT_BYTES_AT_LEAST 46080
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 14
-#define HANGPOSE_PREDICT_BYTES_EACH_POSE 420
+#define HANGPOSE_PREDICT_BYTES_EACH_POSE 428
 #define HANGPOSE_VOLUME_BYTES_AT_LEAST 2048
 #define HANGPOSE_VOLUME_BYTES_EACH_BLOCK 2072
 #define HANGPOSE_COMPLETE_BYTES_AT_LEAST 2048
@@ -82,7 +83,7 @@
 
 // Version of the structs and functions in this header. hangpose_params_init and hangpose_check_abi refuse a
 // program whose header has another version than the library.
-#define HANGPOSE_ABI_VERSION 1
+#define HANGPOSE_ABI_VERSION 2
 
 // Value of an index that does not apply.
 #define HANGPOSE_NO_INDEX 4294967295
@@ -95,6 +96,10 @@
 
 // Value of `work_limit` for no limit.
 #define HANGPOSE_NO_WORK_LIMIT 18446744073709551615ull
+
+// Greatest number of objects that hang already, hangpose_request.hung_count. Of more, pass points of their surfaces as
+// hangpose_request.scene_points.
+#define HANGPOSE_MAX_HUNG 32
 
 // Number of directions in which gravity is tilted.
 #define HANGPOSE_DIRECTIONS 8
@@ -226,7 +231,7 @@ typedef struct hangpose_detail {
   uint32_t struct_size;
   // The status that the call returned.
   hangpose_status status;
-  // Index of the wrong vertex, triangle, point or image, or HANGPOSE_NO_INDEX.
+  // Index of the wrong vertex, triangle, point, image or other element of an array, or HANGPOSE_NO_INDEX.
   uint32_t index;
   // The wrong value; NaN if it is not a number or does not apply.
   double value;
@@ -472,6 +477,96 @@ typedef struct hangpose_supporter_contact {
   float bar_direction[3];
 } hangpose_supporter_contact;
 
+// How an object hangs, one of HANGPOSE_KIND_*; or a set of kinds, joined with |. It is decided for the rest pose, from
+// the shapes alone. A bar is the part of the supporter at a contact that carries the object.
+typedef uint32_t hangpose_kind;
+
+// What a region is made of, one of HANGPOSE_REGION_*.
+typedef uint32_t hangpose_region_shape;
+
+// A part of an object or of a supporter, in its coordinates; zeros for all of it. Part of hangpose_request. The
+// library keeps no pointer to the arrays after the call.
+typedef struct hangpose_region {
+  // One of HANGPOSE_REGION_*.
+  hangpose_region_shape shape;
+  // With HANGPOSE_REGION_BOX: x, y, z of the lower corner, metres, each within +-1,000,000.
+  float low[3];
+  // With HANGPOSE_REGION_BOX: x, y, z of the upper corner, metres, each at least that of `low` and up to 1,000,000.
+  float high[3];
+  // Largest distance from the points or triangles, metres; 0 to 1,000,000.
+  float radius;
+  // Number of points, at least 1 with HANGPOSE_REGION_POINTS and HANGPOSE_REGION_TRIANGLES.
+  uint32_t point_count;
+  // Number of triangles, at least 1 with HANGPOSE_REGION_TRIANGLES.
+  uint32_t triangle_count;
+  // Number of indices, at least 1 if `indices` is not null.
+  uint32_t index_count;
+  // Array of point_count rows of x, y, z: metres, each within +-1,000,000. With HANGPOSE_REGION_TRIANGLES these are
+  // the vertices of the mesh.
+  const float *points;
+  // Array of triangle_count rows of three indices of points, counted from 0.
+  const uint32_t *triangles;
+  // Array of index_count indices, counted from 0, of the points or triangles that count. With HANGPOSE_REGION_POINTS
+  // it may be null if index_count is 0: all points count.
+  const uint32_t *indices;
+} hangpose_region;
+
+// An object that hangs already. Part of hangpose_request.
+typedef struct hangpose_hung {
+  // The object. It must have been analysed with voxels. The object that is to be hung may hang already, too.
+  const struct hangpose_object *object;
+  // Its pose: x, y, z of its origin, metres, in supporter coordinates, each within +-1,000,000.
+  float position[3];
+  // Its pose: x, y, z, w of the quaternion that rotates object coordinates into supporter coordinates; any length
+  // but zero.
+  float quaternion[4];
+} hangpose_hung;
+
+// What hangpose_predict looks for: how and where the object hangs, and what it must not touch. Set the struct with
+// hangpose_request_init, then change single fields. The library keeps no pointer to the arrays after the call. With
+// hangpose_params.settle = 0 only the regions count, and these only with HANGPOSE_CANDIDATES_CONTACTS.
+typedef struct hangpose_request {
+  // sizeof(hangpose_request), set by hangpose_request_init.
+  uint32_t struct_size;
+  // The kinds that are given at all: HANGPOSE_KIND_*, joined with |, at least one. Default: HANGPOSE_KIND_ALL.
+  hangpose_kind allow;
+  // The kinds that come first: HANGPOSE_KIND_*, joined with |, or 0. Of the others, HANGPOSE_KIND_CAPPED comes
+  // before HANGPOSE_KIND_BALANCED. A pose of a kind that comes later is ranked before one that comes first only if
+  // it is much more probable. Default: HANGPOSE_KIND_THREADED | HANGPOSE_KIND_HOOKED.
+  hangpose_kind prefer;
+  // 1 if the object must come to its release pose on a straight way without a collision, as the next three fields
+  // say; 0, the default, for any way.
+  uint32_t has_approach;
+  // x, y, z of the direction in which the object moves, in supporter coordinates; any length but zero.
+  float approach_direction[3];
+  // Largest angle between the way and approach_direction, radians; 0 to pi.
+  float approach_angle;
+  // Length of the way that is free, metres; 0 to 10.
+  float approach_length;
+  // Two poses of the same kind differ by this distance of the centres of mass or by distinct_rotation, or by more,
+  // metres; 0 to 10. Default: 0.02.
+  float distinct_position;
+  // Angle of the rotation from one pose to the other, radians; 0 to pi. Default: 0.35.
+  float distinct_rotation;
+  // Number of points of the scene; 0, the default, if there are none.
+  uint32_t scene_point_count;
+  // Number of objects that hang already; 0, the default, to HANGPOSE_MAX_HUNG.
+  uint32_t hung_count;
+  // The part of the supporter that carries the object: at least half of its weight rests there. In supporter
+  // coordinates. Default: everywhere.
+  struct hangpose_region on;
+  // The part of the object by which it hangs: at least half of its weight rests on it. In object coordinates.
+  // Default: everywhere.
+  struct hangpose_region by;
+  // Array of scene_point_count rows of x, y, z: points of things near the supporter, metres, in supporter
+  // coordinates, each within +-1,000,000. The object does not touch them and never hangs on them. They are not
+  // simulated. May be null if scene_point_count is 0.
+  const float *scene_points;
+  // Array of hung_count objects that hang on the supporter already. As the scene, with their exact shapes. May be
+  // null if hung_count is 0.
+  const struct hangpose_hung *hung;
+} hangpose_request;
+
 // Stability margins of a rest pose. Part of hangpose_pose.
 typedef struct hangpose_margin {
   // Tilt of gravity at which the object last touched the supporter before it left, radians, in each of eight
@@ -520,6 +615,8 @@ typedef struct hangpose_pose {
   float quaternion[4];
   // 1 with hangpose_params.settle. Else 0, and all fields from here to `contacts` are NaN or 0.
   uint32_t has_rest;
+  // How the object hangs, one of HANGPOSE_KIND_*.
+  hangpose_kind kind;
   // Probability that the object hangs and stays, 0 to 1.
   float probability;
   // Share of the directions from which no camera looked at the object, 0 to 1: the same for all poses. This and the next
@@ -546,6 +643,12 @@ typedef struct hangpose_pose {
   // Distance between object and supporter in the release pose, metres: hangpose_params.clearance, or less if
   // there is no room.
   float clearance;
+  // Distance that the object may be away from the release pose in any direction when it is let go, metres: it still
+  // touches nothing, and comes to rest as it would have. This error and the next add up: half of either is fine
+  // together.
+  float tolerance_position;
+  // Angle about the centre of mass by which the object may be rotated away from the release pose, radians.
+  float tolerance_rotation;
   // Stability margins of the rest pose.
   struct hangpose_margin margin;
   // Number of valid contacts; the others are 0.
@@ -614,6 +717,17 @@ typedef struct hangpose_prediction {
   uint32_t settling_probable;
   // Number of firm releases, see hangpose_params.firm_enough.
   uint32_t settling_firm;
+  // Number of firm releases that hang in a way that is preferred: hangpose_request.prefer.
+  uint32_t settling_firm_as_preferred;
+  // Number of poses that touch the scene or an object that hangs already.
+  uint32_t settling_in_scene;
+  // Number of rest poses that hang on or by another region than was asked for, and 1 if the regions have no place
+  // for any.
+  uint32_t settling_outside;
+  // Number of rest poses that hang in a way that is not allowed.
+  uint32_t settling_other_kind;
+  // Number of poses that would stay, but have no way in the direction that was asked for.
+  uint32_t settling_no_approach;
   // Number of rays cast.
   uint64_t rays;
   // Number of distance and inside-outside queries.
@@ -767,7 +881,8 @@ typedef struct hangpose_points_settings {
 // Every triangle of the mesh has zero area.
 #define HANGPOSE_ERROR_DEGENERATE (-13)
 
-// The params require a signed distance field, but the object was analysed with voxels = 0.
+// The params require a signed distance field, but the object was analysed with voxels = 0, or an object that hangs
+// already was.
 #define HANGPOSE_ERROR_NO_DISTANCE_FIELD (-14)
 
 // The result does not fit into the caller's array or into the blocks of the volume. hangpose_detail.minimum is the
@@ -817,6 +932,20 @@ typedef struct hangpose_points_settings {
 // The object comes to rest firmly enough, but too much of what would carry it or be in its way was not seen by any camera.
 #define HANGPOSE_STAGE_UNSEEN 11
 
+// The region that was asked for has no place to hang on or by, or the object comes to rest outside of it:
+// hangpose_request.on and hangpose_request.by.
+#define HANGPOSE_STAGE_OUTSIDE_REGION 12
+
+// The poses touch the scene or an object that hangs already: hangpose_request.scene_points and hangpose_request.hung.
+#define HANGPOSE_STAGE_IN_SCENE 13
+
+// The object stays, but hangs in another way than those that are allowed: hangpose_request.allow.
+#define HANGPOSE_STAGE_OTHER_KIND 14
+
+// The object stays, but no straight way in the direction that was asked for leads to the pose:
+// hangpose_request.has_approach.
+#define HANGPOSE_STAGE_NO_APPROACH 15
+
 // The library's own method.
 #define HANGPOSE_PROFILE_DEFAULT 0
 
@@ -837,6 +966,34 @@ typedef struct hangpose_points_settings {
 
 // Every contact candidate of the object on every contact candidate of the supporter.
 #define HANGPOSE_CANDIDATES_CONTACTS 1
+
+// A bar of the supporter runs through a loop of the object. The two are linked: no motion frees the object but one
+// past the end of the bar.
+#define HANGPOSE_KIND_THREADED 1
+
+// An open hook of the one holds the other: the object is caught on both sides of the bar, and comes free by lifting.
+#define HANGPOSE_KIND_HOOKED 2
+
+// The object stands over a tip of the supporter with its cavity, as a cap on a peg or a mug upside down.
+#define HANGPOSE_KIND_CAPPED 4
+
+// The object is caught on one side at most: friction or balance holds it.
+#define HANGPOSE_KIND_BALANCED 8
+
+// Every kind.
+#define HANGPOSE_KIND_ALL 15
+
+// All of the object or of the supporter. No other field counts.
+#define HANGPOSE_REGION_EVERYWHERE 0
+
+// What is in the box from hangpose_region.low to hangpose_region.high.
+#define HANGPOSE_REGION_BOX 1
+
+// What is within hangpose_region.radius of points: of one point for "here", or of a part of the supporter's cloud.
+#define HANGPOSE_REGION_POINTS 2
+
+// What is within hangpose_region.radius of triangles of a mesh.
+#define HANGPOSE_REGION_TRIANGLES 3
 
 #ifdef __cplusplus
 extern "C" {
@@ -993,19 +1150,30 @@ hangpose_status hangpose_supporter_get_contact(const struct hangpose_supporter *
                                                struct hangpose_supporter_contact *contact,
                                                struct hangpose_detail *detail);
 
-// Finds poses in which `object` hangs on `supporter` and writes the best to `poses`, best first. Both models must
-// have been analysed with these `params`.
+// Returns the name of one kind: "threaded", "hooked", "capped" or "balanced", and "no kind" for anything else; a
+// static string, never null.
+const char *hangpose_kind_string(hangpose_kind kind);
+
+// Sets `request` to anything anywhere, as a null request of hangpose_predict. `struct_size` is
+// sizeof(hangpose_request). Returns HANGPOSE_OK, or an error.
+hangpose_status hangpose_request_init(struct hangpose_request *request,
+                                      size_t struct_size,
+                                      struct hangpose_detail *detail);
+
+// Finds poses in which `object` hangs on `supporter` as `request` asks and writes the best to `poses`, best first.
+// Both models must have been analysed with these `params`. `request` may be null: anything anywhere.
 //
 // `memory` is working memory of at least hangpose_predict_bytes, needed during the call only. `monitor` may be
 // null. `poses` is an array of `pose_capacity` structs, at least 1; a larger capacity may take more time.
 // `pose_size` is sizeof(hangpose_pose). Set prediction->struct_size before the call; prediction->pose_count is the
-// number of poses written. Concurrent calls may share the models and `params`, and need their own `memory`,
+// number of poses written. Concurrent calls may share the models, `request` and `params`, and need their own `memory`,
 // `poses`, `prediction` and `detail`.
 //
 // Returns HANGPOSE_OK with at least one pose; HANGPOSE_REJECTED with none, and prediction->stage gives the reason;
 // HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT with the best poses found so far, possibly none; or an error.
 hangpose_status hangpose_predict(const struct hangpose_object *object,
                                  const struct hangpose_supporter *supporter,
+                                 const struct hangpose_request *request,
                                  const struct hangpose_params *params,
                                  void *memory,
                                  size_t memory_size,

@@ -10,6 +10,9 @@
 //   hangpose::pose poses[10];
 //   auto found = hangpose::predict(*object, *supporter, params, poses);
 //
+// hangpose::request says how and where the object shall hang and what it must not touch.
+// examples-c/09_requests.cpp is a complete program.
+//
 // From depth images: hangpose::volume gives the mesh of an object, hangpose::depth_points the cloud of a
 // supporter. examples-c/07_depth_images.cpp is a complete program.
 #ifndef HANGPOSE_HPP
@@ -312,6 +315,91 @@ inline view<const hangpose_contact> contacts(const pose &hanging) noexcept {
   return {hanging.contacts, hanging.contact_count};
 }
 
+// A part of an object or of a supporter, in its coordinates, metres. Its arrays are the caller's and must
+// outlive it. The default is everywhere.
+struct region : hangpose_region {
+  region() noexcept : hangpose_region() {}
+  // What is in a box: its lower and its upper corner.
+  static region within(const box &corners) noexcept {
+    region made;
+    made.shape = HANGPOSE_REGION_BOX;
+    for (std::size_t i = 0; i < 3; ++i) made.low[i] = corners[0][i], made.high[i] = corners[1][i];
+    return made;
+  }
+  // What is within `distance` of points: of one point for "here".
+  static region around(view<const vec3> rows, float distance) noexcept {
+    region made;
+    made.shape = HANGPOSE_REGION_POINTS;
+    made.point_count = internal::count(rows.size());
+    made.points = internal::numbers(rows);
+    made.radius = distance;
+    return made;
+  }
+  // What is within `distance` of the points with these indices: of a part of a cloud.
+  static region around(view<const vec3> rows, view<const std::uint32_t> chosen, float distance) noexcept {
+    region made = around(rows, distance);
+    made.choose(chosen);
+    return made;
+  }
+  // What is within `distance` of the triangles with these indices: of a part of a mesh.
+  static region around(view<const vec3> vertex_rows, view<const triangle> triangle_rows,
+                       view<const std::uint32_t> chosen, float distance) noexcept {
+    region made = around(vertex_rows, distance);
+    made.shape = HANGPOSE_REGION_TRIANGLES;
+    made.triangle_count = internal::count(triangle_rows.size());
+    made.triangles = internal::numbers(triangle_rows);
+    made.choose(chosen);
+    return made;
+  }
+
+ private:
+  // A null pointer would choose all, so no indices are not null, and the call reports that there are none.
+  void choose(view<const std::uint32_t> chosen) noexcept {
+    static constexpr std::uint32_t none = 0;
+    index_count = internal::count(chosen.size());
+    indices = chosen.empty() ? &none : chosen.data();
+  }
+};
+
+// An object that hangs already at the rest pose of a prediction, or at the release pose if it has no rest.
+// The object must outlive it.
+struct hung : hangpose_hung {
+  hung(const hangpose::object &hanging, const pose &at) noexcept : hangpose_hung() {
+    object = hanging.get();
+    for (std::size_t i = 0; i < 3; ++i) position[i] = at.has_rest ? at.rest_position[i] : at.position[i];
+    for (std::size_t i = 0; i < 4; ++i)
+      quaternion[i] = at.has_rest ? at.rest_quaternion[i] : at.quaternion[i];
+  }
+};
+static_assert(sizeof(hung) == sizeof(hangpose_hung), "an array of one is an array of the other");
+
+// What predict looks for: the fields of hangpose_request, set to anything anywhere. Its arrays are the
+// caller's and must outlive it.
+struct request : hangpose_request {
+  request() noexcept : hangpose_request() { hangpose_request_init(this, sizeof(hangpose_request), nullptr); }
+  // Asks for a straight way of `length` metres to the release pose that is free of collisions and differs by
+  // at most `angle` radians from `direction`, in supporter coordinates.
+  request &come_along(const vec3 &direction, float angle, float length) noexcept {
+    has_approach = 1;
+    for (std::size_t i = 0; i < 3; ++i) approach_direction[i] = direction[i];
+    approach_angle = angle;
+    approach_length = length;
+    return *this;
+  }
+  // Keeps the object away from points of things near the supporter, metres, in supporter coordinates.
+  request &avoid(view<const vec3> scene) noexcept {
+    scene_point_count = internal::count(scene.size());
+    scene_points = internal::numbers(scene);
+    return *this;
+  }
+  // Keeps the object away from objects that hang already, up to HANGPOSE_MAX_HUNG.
+  request &avoid(view<const hangpose::hung> objects) noexcept {
+    hung_count = internal::count(objects.size());
+    hung = objects.data();
+    return *this;
+  }
+};
+
 // Result of predict: poses, best first, or the reason why there are none.
 class prediction : public hangpose_prediction {
  public:
@@ -324,24 +412,25 @@ class prediction : public hangpose_prediction {
   const char *reason() const noexcept { return hangpose_stage_string(stage); }
 };
 
-// Finds poses in which the object hangs on the supporter and writes them to `poses`. `work` is working memory
-// of at least hangpose_predict_bytes or HANGPOSE_PREDICT_BYTES. Both models must have been analysed with
-// these params.
-inline result<prediction> predict(const object &object, const supporter &supporter, const params &params,
-                                  view<pose> poses, const memory &work, monitor *watch = nullptr) noexcept {
+// Finds poses in which the object hangs on the supporter as it was asked for and writes them to `poses`.
+// `work` is working memory of at least hangpose_predict_bytes or HANGPOSE_PREDICT_BYTES. Both models must
+// have been analysed with these params.
+inline result<prediction> predict(const object &object, const supporter &supporter, const request &asked,
+                                  const params &params, view<pose> poses, const memory &work,
+                                  monitor *watch = nullptr) noexcept {
   prediction found;
   error why;
-  found.status =
-      hangpose_predict(object.get(), supporter.get(), &params, work.data(), work.size(), internal::get(watch),
-                       poses.data(), sizeof(pose), internal::count(poses.size()), &found, why.out());
+  found.status = hangpose_predict(object.get(), supporter.get(), &asked, &params, work.data(), work.size(),
+                                  internal::get(watch), poses.data(), sizeof(pose),
+                                  internal::count(poses.size()), &found, why.out());
   if (found.status < 0) return why;
   found.poses = view<pose>(poses.data(), found.pose_count);
   return found;
 }
 
 // The same with working memory from the heap.
-inline result<prediction> predict(const object &object, const supporter &supporter, const params &params,
-                                  view<pose> poses, monitor *watch = nullptr) noexcept {
+inline result<prediction> predict(const object &object, const supporter &supporter, const request &asked,
+                                  const params &params, view<pose> poses, monitor *watch = nullptr) noexcept {
   auto within = internal::limits_of(params, nullptr, nullptr);
   if (!within) return within.error();
   const auto info = supporter.info();
@@ -350,7 +439,17 @@ inline result<prediction> predict(const object &object, const supporter &support
   within->poses = internal::count(poses.size());
   memory work = memory::own(hangpose_predict_bytes(&*within));
   if (work.data() == nullptr) return internal::no_memory();
-  return predict(object, supporter, params, poses, work, watch);
+  return predict(object, supporter, asked, params, poses, work, watch);
+}
+
+// The same for anything anywhere.
+inline result<prediction> predict(const object &object, const supporter &supporter, const params &params,
+                                  view<pose> poses, const memory &work, monitor *watch = nullptr) noexcept {
+  return predict(object, supporter, request(), params, poses, work, watch);
+}
+inline result<prediction> predict(const object &object, const supporter &supporter, const params &params,
+                                  view<pose> poses, monitor *watch = nullptr) noexcept {
+  return predict(object, supporter, request(), params, poses, watch);
 }
 
 // Fills `points` and `normals`, arrays of the same length, with evenly spread samples of a mesh: the cloud of

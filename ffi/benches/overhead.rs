@@ -145,6 +145,7 @@ impl C {
             hangpose_predict(
                 self.object,
                 self.supporter,
+                null(),
                 &self.params,
                 work.as_mut_ptr().cast(),
                 work.len(),

@@ -5,8 +5,8 @@
 //! test the conversion from the core's types to the C structs, because both sides use it; tests/conversions.rs does.
 //!
 //! Each file holds little-endian words of 32 bits: profile; number of vertices, triangles and points; the three arrays
-//! and the normals; the expected status; the words of `hangpose_prediction` from `pose_count` to `settling_firm`, then
-//! its work; and for each pose the words of `hangpose_pose` after `struct_size`.
+//! and the normals; the expected status; the words of `hangpose_prediction` from `pose_count` to
+//! `settling_no_approach`, then its work; and for each pose the words of `hangpose_pose` after `struct_size`.
 
 use hangpose::geometry::{Cloud, Mesh};
 use hangpose::hanging::{HangingPose, Request};
@@ -86,7 +86,7 @@ fn words(thing: &Thing, support: &Support, profile: u32) -> Result<Vec<u32>, Box
     let status = if found.poses.is_empty() { HANGPOSE_REJECTED } else { HANGPOSE_OK };
     words.push(status as u32);
     let prediction = hangpose_prediction::from(&found);
-    let end = offset_of!(hangpose_prediction, settling_firm) + size_of::<u32>();
+    let end = offset_of!(hangpose_prediction, settling_no_approach) + size_of::<u32>();
     words.extend(words_between(&prediction, offset_of!(hangpose_prediction, pose_count), end));
     for work in [prediction.rays, prediction.distance_queries] {
         words.extend([work as u32, (work >> 32) as u32]);

@@ -131,12 +131,12 @@ pub(crate) unsafe fn rows<'a, T>(
     Ok(unsafe { core::slice::from_raw_parts(pointer.cast(), count as usize) })
 }
 
-/// `count` numbers.
+/// `count` numbers or structs, at least one.
 ///
 /// # Safety
 ///
-/// The obligations of the caller at the top of this file, and `T` is `u8` or `u16`.
-pub(crate) unsafe fn numbers<'a, T>(
+/// The obligations of the caller at the top of this file, and every bit pattern is a `T`.
+pub(crate) unsafe fn elements<'a, T>(
     argument: &'static str,
     pointer: *const T,
     count: u32,
@@ -160,7 +160,7 @@ pub(crate) unsafe fn bytes_mut<'a>(
 ) -> Result<&'a mut [u8], Failure> {
     check(argument, pointer)?;
     check_count::<u8>(argument, count)?;
-    // SAFETY: as in `numbers`, and nobody else uses them. The caller vouches for the rest.
+    // SAFETY: as in `elements`, and nobody else uses them. The caller vouches for the rest.
     Ok(unsafe { core::slice::from_raw_parts_mut(pointer, count as usize) })
 }
 
@@ -224,6 +224,10 @@ impl Region {
 
     pub(crate) fn written<T>(name: &'static str, pointer: *const T, count: usize) -> Self {
         Self { is_written: true, ..Self::read(name, pointer, count) }
+    }
+
+    pub(crate) fn named(self, name: &'static str) -> Self {
+        Self { name, ..self }
     }
 
     fn overlaps(&self, other: &Self) -> bool {

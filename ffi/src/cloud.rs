@@ -1,4 +1,4 @@
-use crate::border::{Public, Region, numbers, rows};
+use crate::border::{Public, Region, elements, rows};
 use crate::failure::Failure;
 use hangpose_core::geometry::{Cloud, CloudError, MAX_COUNT};
 
@@ -57,7 +57,7 @@ impl hangpose_cloud {
         let mut cloud = Cloud::new(points, normals)?.seen_from(viewpoints)?;
         if !self.marks.is_null() {
             // SAFETY: those of this function.
-            cloud = cloud.hang_on(unsafe { numbers("cloud.marks", self.marks, self.point_count) }?)?;
+            cloud = cloud.hang_on(unsafe { elements("cloud.marks", self.marks, self.point_count) }?)?;
         }
         if !self.region.is_null() {
             // SAFETY: those of this function.

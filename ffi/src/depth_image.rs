@@ -1,9 +1,8 @@
-use crate::border::{Public, Region, numbers};
+use crate::border::{Public, Region, elements};
 use crate::depth_failure::{DepthFailure, What};
-use hangpose_core::geometry::{Pose, Vector};
+use crate::pose::pose_of;
 use hangpose_core::perception::depth::{DepthCamera, DepthImage, Mask};
 use hangpose_core::perception::volume::VolumeError;
-use nalgebra::{Quaternion, UnitQuaternion};
 
 /// A pinhole camera with Brown-Conrady distortion. Its coordinates are those of OpenCV and of optical frames in ROS: x to
 /// the right, y down, z forward. Pixel (0, 0) is the centre of the upper left pixel.
@@ -67,22 +66,16 @@ impl hangpose_depth_image {
         let hangpose_camera { width, height, focal, centre, distortion } = self.camera;
         let camera = DepthCamera::new([width, height], focal, centre, distortion)?;
         // SAFETY: those of this function.
-        let depths = unsafe { numbers("image.depths", self.depths, self.depth_count) }?;
-        let [x, y, z, w] = self.quaternion;
-        let quaternion = Quaternion::new(w, x, y, z);
-        if !quaternion.norm_squared().is_normal() {
-            return Err(What::Quaternion { quaternion: self.quaternion }.into());
-        }
-        let pose =
-            Pose::from_parts(Vector::from(self.position).into(), UnitQuaternion::from_quaternion(quaternion));
-        let position = self.position;
+        let depths = unsafe { elements("image.depths", self.depths, self.depth_count) }?;
+        let &Self { position, quaternion, .. } = self;
+        let pose = pose_of(position, quaternion).ok_or(What::Quaternion { quaternion })?;
         let image = DepthImage::new(camera, depths, self.scale, pose)
             .map_err(|error| What::Image { error, position })?;
         if self.labels.is_null() && self.label_count == 0 {
             return Ok((image, None));
         }
         // SAFETY: those of this function.
-        let labels = unsafe { numbers("image.labels", self.labels, self.label_count) }?;
+        let labels = unsafe { elements("image.labels", self.labels, self.label_count) }?;
         if labels.len() != depths.len() {
             return Err(VolumeError::Mask { labels: labels.len(), pixels: depths.len() }.into());
         }

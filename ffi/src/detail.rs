@@ -19,7 +19,7 @@ pub struct hangpose_detail {
     pub struct_size: u32,
     /// The status that the call returned.
     pub status: hangpose_status,
-    /// Index of the wrong vertex, triangle, point or image, or HANGPOSE_NO_INDEX.
+    /// Index of the wrong vertex, triangle, point, image or other element of an array, or HANGPOSE_NO_INDEX.
     pub index: u32,
     /// The wrong value; NaN if it is not a number or does not apply.
     pub value: f64,
@@ -84,13 +84,15 @@ impl Write for Writer<'_> {
 mod tests {
     extern crate std;
     use super::*;
-    use crate::failure::Failure;
+    use crate::failure::{Failure, HungFault};
     use hangpose_core::ParamsError;
     use hangpose_core::geometry::{CloudError, MeshError};
+    use hangpose_core::hanging::{RegionError, RequestError};
     use std::string::ToString;
 
     #[test]
     fn the_longest_messages_fit() {
+        let request = |error| Failure::Request { error, spot: Place::default().into() };
         let (most, worst) = (usize::MAX, [-1.175_494_4e-38_f32; 3]);
         for failure in [
             Failure::StructSize { argument: "supporter memory", given: most, expected: most },
@@ -113,6 +115,18 @@ mod tests {
             ParamsError::Gravity { gravity: worst }.into(),
             ParamsError::CentreOfMass { point: worst }.into(),
             Failure::NoDistanceField,
+            Failure::ManyHung { count: u32::MAX },
+            Failure::Hung { index: most, fault: HungFault::Handle },
+            Failure::Hung { index: most, fault: HungFault::Position(worst) },
+            Failure::Hung { index: most, fault: HungFault::Quaternion([worst[0]; 4]) },
+            request(RequestError::NothingAllowed),
+            request(RequestError::On(RegionError::Empty)),
+            request(RequestError::On(RegionError::Number)),
+            request(RequestError::On(RegionError::Index { index: u32::MAX, count: most })),
+            request(RequestError::Approach),
+            request(RequestError::Scene { point: most, position: worst }),
+            request(RequestError::Hung { index: most }),
+            request(RequestError::Distinct),
         ] {
             let text = failure.to_string();
             assert!(text.len() < HANGPOSE_MESSAGE_CHARS, "{} bytes: {text}", text.len());

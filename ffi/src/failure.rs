@@ -6,7 +6,7 @@ use crate::status::*;
 use core::fmt::{Display, Formatter};
 use hangpose_core::ParamsError;
 use hangpose_core::geometry::{CloudError, MAX_COORDINATE, MAX_COUNT, MeshError};
-use hangpose_core::hanging::{AnalysisError, PredictError};
+use hangpose_core::hanging::{AnalysisError, PredictError, RegionError, RequestError};
 use hangpose_core::memory::OutOfMemory;
 use hangpose_core::perception::sampling::SamplingError;
 
@@ -29,7 +29,19 @@ pub(crate) enum Failure {
     Cloud(CloudError),
     Params(ParamsError),
     NoDistanceField,
+    Request { error: RequestError, spot: Spot },
+    Hung { index: usize, fault: HungFault },
+    ManyHung { count: u32 },
     Cancelled,
+}
+
+/// What is wrong with an object that hangs already.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum HungFault {
+    Null,
+    Handle,
+    Position([f32; 3]),
+    Quaternion([f32; 4]),
 }
 
 /// Location of a failure: the field with its prefix, the index of the element, the value and its range.
@@ -40,6 +52,27 @@ pub(crate) struct Place {
     pub(crate) index: Option<usize>,
     pub(crate) value: Option<f64>,
     pub(crate) range: Option<[f64; 2]>,
+}
+
+/// A [`Place`] without prefix in less memory, so that results stay small.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Spot {
+    field: &'static str,
+    index: Option<u32>,
+    value: Option<f64>,
+    range: Option<[f64; 2]>,
+}
+
+impl From<Place> for Spot {
+    fn from(Place { prefix: _, field, index, value, range }: Place) -> Self {
+        Self { field, index: index.map(|index| index as u32), value, range }
+    }
+}
+
+impl From<Spot> for Place {
+    fn from(Spot { field, index, value, range }: Spot) -> Self {
+        Self { prefix: "", field, index: index.map(|index| index as usize), value, range }
+    }
 }
 
 /// What a detail says of a call that did nothing.
@@ -53,16 +86,17 @@ pub(crate) trait Reason: Display {
 impl Reason for Failure {
     fn status(&self) -> hangpose_status {
         match self {
-            Self::Null { .. } => HANGPOSE_ERROR_NULL,
+            Self::Null { .. } | Self::Hung { fault: HungFault::Null, .. } => HANGPOSE_ERROR_NULL,
             Self::Misaligned { .. } => HANGPOSE_ERROR_MISALIGNED,
             Self::StructSize { .. } => HANGPOSE_ERROR_STRUCT_SIZE,
             Self::Version { .. } => HANGPOSE_ERROR_ABI_VERSION,
             Self::Memory { .. } => HANGPOSE_ERROR_MEMORY,
             Self::Overlap { .. } => HANGPOSE_ERROR_OVERLAP,
-            Self::Handle { .. } => HANGPOSE_ERROR_HANDLE,
+            Self::Handle { .. } | Self::Hung { fault: HungFault::Handle, .. } => HANGPOSE_ERROR_HANDLE,
             Self::Busy { .. } => HANGPOSE_ERROR_BUSY,
             Self::Empty { .. } => HANGPOSE_ERROR_EMPTY,
             Self::Count { .. }
+            | Self::ManyHung { .. }
             | Self::Mesh(MeshError::Empty | MeshError::TooLarge { .. })
             | Self::Cloud(
                 CloudError::Empty
@@ -70,8 +104,16 @@ impl Reason for Failure {
                 | CloudError::NormalCount { .. }
                 | CloudError::MarkCount { .. },
             ) => HANGPOSE_ERROR_COUNT,
+            Self::Request { error: RequestError::Hung { .. }, .. } => HANGPOSE_ERROR_NO_DISTANCE_FIELD,
+            Self::Request {
+                error:
+                    RequestError::On(RegionError::Index { .. }) | RequestError::By(RegionError::Index { .. }),
+                ..
+            } => HANGPOSE_ERROR_INDEX,
             Self::Choice { .. }
             | Self::Params(_)
+            | Self::Request { .. }
+            | Self::Hung { fault: HungFault::Position(_) | HungFault::Quaternion(_), .. }
             | Self::Mesh(MeshError::Coordinate { .. } | MeshError::Viewpoint { .. })
             | Self::Cloud(
                 CloudError::Coordinate { .. }
@@ -118,6 +160,12 @@ impl Reason for Failure {
             Self::Cloud(error) => cloud_place(error),
             Self::Params(error) => params_place(error),
             Self::NoDistanceField => Place::of("object"),
+            Self::Request { spot, .. } => spot.into(),
+            Self::Hung { index, fault } => hung_place(index, fault),
+            Self::ManyHung { count } => {
+                let range = [0.0, crate::HANGPOSE_MAX_HUNG as f64];
+                Place::of("request.hung_count").value(f64::from(count)).range(range)
+            }
             Self::Cancelled => Place::default(),
         }
     }
@@ -201,6 +249,15 @@ fn cloud_place(error: CloudError) -> Place {
     }
 }
 
+fn hung_place(index: usize, fault: HungFault) -> Place {
+    let at = |field| Place { index: Some(index), ..Place::of(field) };
+    match fault {
+        HungFault::Null | HungFault::Handle => at("request.hung.object"),
+        HungFault::Position(position) => Place::of("request.hung.position").coordinate(Some(index), position),
+        HungFault::Quaternion(_) => at("request.hung.quaternion"),
+    }
+}
+
 fn params_place(error: ParamsError) -> Place {
     match error {
         ParamsError::OutOfRange { name, value, min, max } => Place { prefix: "params.", ..Place::of(name) }
@@ -260,6 +317,29 @@ impl Display for Failure {
             Self::Cloud(error) => error.fmt(f),
             Self::Params(error) => error.fmt(f),
             Self::NoDistanceField => PredictError::NoDistanceField.fmt(f),
+            Self::Request { error, .. } => error.fmt(f),
+            Self::Hung { index, fault } => {
+                write!(f, "object {index} of those that hang already ")?;
+                match fault {
+                    HungFault::Null => f.write_str("is null: pass an object of hangpose_object_create"),
+                    HungFault::Handle => f.write_str(
+                        "was never created by hangpose_object_create, or was moved or overwritten: create it and keep it in place",
+                    ),
+                    HungFault::Position(position) => write!(
+                        f,
+                        "is at {position:?}: every coordinate must be a number of metres within ±{MAX_COORDINATE}"
+                    ),
+                    HungFault::Quaternion(quaternion) => write!(
+                        f,
+                        "has the quaternion {quaternion:?}: pass x, y, z, w of a rotation, which are numbers and not all 0"
+                    ),
+                }
+            }
+            Self::ManyHung { count } => write!(
+                f,
+                "request.hung_count is {count}, but must be 0 to {}: pass points of the surfaces of the others as request.scene_points",
+                crate::HANGPOSE_MAX_HUNG
+            ),
             Self::Cancelled => f.write_str("cancelled"),
         }
     }
@@ -305,6 +385,8 @@ impl From<PredictError> for Failure {
             PredictError::Params(error) => error.into(),
             PredictError::OutOfMemory(error) => error.into(),
             PredictError::NoDistanceField => Self::NoDistanceField,
+            // A request of a caller was checked before.
+            PredictError::Request(error) => Self::Request { error, spot: Place::of("request").into() },
         }
     }
 }

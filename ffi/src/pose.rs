@@ -1,7 +1,10 @@
 use crate::detail::HANGPOSE_NO_INDEX;
+use crate::kind::{hangpose_kind, kind};
+use hangpose_core::geometry::{Pose, Vector};
 use hangpose_core::hanging::HangingPose;
 use hangpose_core::hanging::sites::{Cost, SiteMatch};
 use hangpose_core::mechanics::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
+use nalgebra::{Quaternion, UnitQuaternion};
 
 /// Number of directions in which gravity is tilted.
 pub const HANGPOSE_DIRECTIONS: usize = 8;
@@ -65,6 +68,8 @@ pub struct hangpose_pose {
 
     /// 1 with hangpose_params.settle. Else 0, and all fields from here to `contacts` are NaN or 0.
     pub has_rest: u32,
+    /// How the object hangs, one of HANGPOSE_KIND_*.
+    pub kind: hangpose_kind,
     /// Probability that the object hangs and stays, 0 to 1.
     pub probability: f32,
     /// Share of the directions from which no camera looked at the object, 0 to 1: the same for all poses. This and the next
@@ -91,6 +96,12 @@ pub struct hangpose_pose {
     /// Distance between object and supporter in the release pose, metres: hangpose_params.clearance, or less if
     /// there is no room.
     pub clearance: f32,
+    /// Distance that the object may be away from the release pose in any direction when it is let go, metres: it still
+    /// touches nothing, and comes to rest as it would have. This error and the next add up: half of either is fine
+    /// together.
+    pub tolerance_position: f32,
+    /// Angle about the centre of mass by which the object may be rotated away from the release pose, radians.
+    pub tolerance_rotation: f32,
     /// Stability margins of the rest pose.
     pub margin: hangpose_margin,
     /// Number of valid contacts; the others are 0.
@@ -117,6 +128,14 @@ pub struct hangpose_pose {
     pub total: f32,
 }
 
+/// The pose of a position in metres and a quaternion x, y, z, w of any length; `None` if the quaternion is no rotation.
+pub(crate) fn pose_of(position: [f32; 3], [x, y, z, w]: [f32; 4]) -> Option<Pose> {
+    let quaternion = Quaternion::new(w, x, y, z);
+    let rotation = UnitQuaternion::from_quaternion(quaternion);
+    let is_rotation = quaternion.norm_squared().is_normal();
+    is_rotation.then(|| Pose::from_parts(Vector::from(position).into(), rotation))
+}
+
 impl From<&HangingPose> for hangpose_pose {
     fn from(pose: &HangingPose) -> Self {
         let mut answer = Self {
@@ -127,6 +146,7 @@ impl From<&HangingPose> for hangpose_pose {
         };
         if let Some(rest) = &pose.rest {
             answer.has_rest = 1;
+            answer.kind = kind(rest.kind);
             answer.probability = rest.probability;
             answer.unseen_object = rest.unseen.object;
             answer.unseen_shadow = rest.unseen.shadow;
@@ -137,6 +157,8 @@ impl From<&HangingPose> for hangpose_pose {
             answer.rest_quaternion = rest.pose.rotation.coords.into();
             answer.sinking = rest.sinking;
             answer.clearance = rest.clearance;
+            answer.tolerance_position = rest.tolerance.position;
+            answer.tolerance_rotation = rest.tolerance.rotation;
             answer.margin = (&rest.margin).into();
             answer.contact_count = rest.contacts().len() as u32;
             for (place, contact) in answer.contacts.iter_mut().zip(rest.contacts()) {
@@ -171,6 +193,7 @@ impl hangpose_pose {
             position: [NAN; 3],
             quaternion: [NAN; 4],
             has_rest: 0,
+            kind: 0,
             probability: NAN,
             unseen_object: NAN,
             unseen_shadow: NAN,
@@ -181,6 +204,8 @@ impl hangpose_pose {
             rest_quaternion: [NAN; 4],
             sinking: NAN,
             clearance: NAN,
+            tolerance_position: NAN,
+            tolerance_rotation: NAN,
             margin: hangpose_margin {
                 tilts: [NAN; HANGPOSE_DIRECTIONS],
                 least_tilt: NAN,

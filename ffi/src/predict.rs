@@ -1,5 +1,6 @@
 use crate::border::{
-    DETAIL, Public, Region, check, check_size, input, keep_apart, memory as caller_memory, output, report,
+    DETAIL, Public, Region, check, check_size, input, keep_apart, memory as caller_memory, optional_input,
+    output, report,
 };
 use crate::detail::hangpose_detail;
 use crate::failure::Failure;
@@ -7,15 +8,14 @@ use crate::monitor::{self, hangpose_monitor};
 use crate::object::{ObjectHandle, hangpose_object};
 use crate::params::hangpose_params;
 use crate::pose::hangpose_pose;
+use crate::request::{HungObjects, hangpose_request};
 use crate::status::*;
 use crate::supporter::{SupporterHandle, hangpose_supporter};
 use core::ffi::c_void;
 use hangpose_core::Monitor;
 use hangpose_core::hanging::contacts::CandidateCounts;
 use hangpose_core::hanging::sites::MatchingCounts;
-use hangpose_core::hanging::{
-    HangingPose, Prediction, Request, SearchCounts, SettlingCounts, predict, predict_bytes,
-};
+use hangpose_core::hanging::{HangingPose, Prediction, SearchCounts, SettlingCounts, predict, predict_bytes};
 
 /// Result of hangpose_predict beside the poses: the number of candidates left after each step of the method, and
 /// the work done. The fields matching_* are 0 with HANGPOSE_CANDIDATES_CONTACTS.
@@ -62,6 +62,17 @@ pub struct hangpose_prediction {
     pub settling_probable: u32,
     /// Number of firm releases, see hangpose_params.firm_enough.
     pub settling_firm: u32,
+    /// Number of firm releases that hang in a way that is preferred: hangpose_request.prefer.
+    pub settling_firm_as_preferred: u32,
+    /// Number of poses that touch the scene or an object that hangs already.
+    pub settling_in_scene: u32,
+    /// Number of rest poses that hang on or by another region than was asked for, and 1 if the regions have no place
+    /// for any.
+    pub settling_outside: u32,
+    /// Number of rest poses that hang in a way that is not allowed.
+    pub settling_other_kind: u32,
+    /// Number of poses that would stay, but have no way in the direction that was asked for.
+    pub settling_no_approach: u32,
     /// Number of rays cast.
     pub rays: u64,
     /// Number of distance and inside-outside queries.
@@ -83,13 +94,13 @@ pub(crate) fn pose_bytes(count: u32) -> usize {
     size_of::<HangingPose>().saturating_mul(count as usize).saturating_add(align_of::<HangingPose>() - 1)
 }
 
-/// Finds poses in which `object` hangs on `supporter` and writes the best to `poses`, best first. Both models must
-/// have been analysed with these `params`.
+/// Finds poses in which `object` hangs on `supporter` as `request` asks and writes the best to `poses`, best first.
+/// Both models must have been analysed with these `params`. `request` may be null: anything anywhere.
 ///
 /// `memory` is working memory of at least hangpose_predict_bytes, needed during the call only. `monitor` may be
 /// null. `poses` is an array of `pose_capacity` structs, at least 1; a larger capacity may take more time.
 /// `pose_size` is sizeof(hangpose_pose). Set prediction->struct_size before the call; prediction->pose_count is the
-/// number of poses written. Concurrent calls may share the models and `params`, and need their own `memory`,
+/// number of poses written. Concurrent calls may share the models, `request` and `params`, and need their own `memory`,
 /// `poses`, `prediction` and `detail`.
 ///
 /// Returns HANGPOSE_OK with at least one pose; HANGPOSE_REJECTED with none, and prediction->stage gives the reason;
@@ -98,6 +109,7 @@ pub(crate) fn pose_bytes(count: u32) -> usize {
 pub unsafe extern "C" fn hangpose_predict(
     object: *const hangpose_object,
     supporter: *const hangpose_supporter,
+    request: *const hangpose_request,
     params: *const hangpose_params,
     memory: *mut c_void,
     memory_size: usize,
@@ -109,24 +121,42 @@ pub unsafe extern "C" fn hangpose_predict(
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
     let call = || {
+        let anything = hangpose_request::any();
         // SAFETY: the caller vouches for the pointers.
-        let (object, supporter) =
-            unsafe { (ObjectHandle::share(object.cast())?, SupporterHandle::share(supporter.cast())?) };
+        let (object, supporter, request) = unsafe {
+            (
+                ObjectHandle::share(object.cast())?,
+                SupporterHandle::share(supporter.cast())?,
+                optional_input(request)?.unwrap_or(&anything),
+            )
+        };
+        // SAFETY: as above.
+        let hung = unsafe { HungObjects::of(request) }?;
         check_size::<hangpose_pose>(pose_size)?;
         let ([object_handle, object_arena], [supporter_handle, supporter_arena]) =
             (object.regions(), supporter.regions());
-        keep_apart(&[
+        let [one, two, three, four, five] = [
             Region::written(DETAIL, detail, 1),
             Region::written("memory", memory.cast::<u8>(), memory_size),
             Region::written("poses", poses, pose_capacity as usize),
             Region::written("prediction", prediction, 1),
             Region::written("monitor", monitor, 1),
+        ];
+        keep_apart(&[
+            one,
+            two,
+            three,
+            four,
+            five,
             Region::read("params", params, 1),
             object_handle,
             object_arena,
             supporter_handle,
             supporter_arena,
         ])?;
+        for read in request.regions().chain(hung.regions()) {
+            keep_apart(&[one, two, three, four, five, read])?;
+        }
         // SAFETY: the caller vouches for the pointers, and what is written is apart from the rest.
         let (params, monitor, prediction, memory) = unsafe {
             (
@@ -137,11 +167,13 @@ pub unsafe extern "C" fn hangpose_predict(
             )
         };
         check("poses", poses.cast_const())?;
+        let hung = hung.list();
+        // SAFETY: the caller vouches for the arrays, which are apart from what is written.
+        let request = unsafe { request.check(&hung) }?;
         let (object, supporter) = (object.model(), supporter.model());
         let (slots, memory) = pose_slots(memory, pose_capacity, predict_bytes(&supporter.limits()))?;
         let none = Monitor::new();
-        let found =
-            predict(object, supporter, &Request::ANY, &params, slots, memory, monitor.unwrap_or(&none))?;
+        let found = predict(object, supporter, &request, &params, slots, memory, monitor.unwrap_or(&none))?;
         for (index, pose) in found.poses.iter().enumerate() {
             // SAFETY: aligned, not null, and `index` is below the capacity that the caller vouches for.
             unsafe { poses.add(index).write(pose.into()) };
@@ -200,6 +232,11 @@ impl From<&Prediction<'_>> for hangpose_prediction {
             unseen,
             probable,
             firm,
+            firm_as_preferred,
+            in_scene,
+            outside,
+            other_kind,
+            no_approach,
         } = found.counts.settling;
         Self {
             struct_size: size_of::<Self>() as u32,
@@ -220,6 +257,11 @@ impl From<&Prediction<'_>> for hangpose_prediction {
             settling_unseen: unseen as u32,
             settling_probable: probable as u32,
             settling_firm: firm as u32,
+            settling_firm_as_preferred: firm_as_preferred as u32,
+            settling_in_scene: in_scene as u32,
+            settling_outside: outside as u32,
+            settling_other_kind: other_kind as u32,
+            settling_no_approach: no_approach as u32,
             rays: found.work.rays,
             distance_queries: found.work.distance_queries,
         }

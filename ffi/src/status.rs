@@ -44,7 +44,8 @@ pub const HANGPOSE_ERROR_VALUE: hangpose_status = -11;
 pub const HANGPOSE_ERROR_INDEX: hangpose_status = -12;
 /// Every triangle of the mesh has zero area.
 pub const HANGPOSE_ERROR_DEGENERATE: hangpose_status = -13;
-/// The params require a signed distance field, but the object was analysed with voxels = 0.
+/// The params require a signed distance field, but the object was analysed with voxels = 0, or an object that hangs
+/// already was.
 pub const HANGPOSE_ERROR_NO_DISTANCE_FIELD: hangpose_status = -14;
 /// The result does not fit into the caller's array or into the blocks of the volume. hangpose_detail.minimum is the
 /// least capacity that may hold it.
@@ -82,6 +83,16 @@ pub const HANGPOSE_STAGE_NEVER_RESTS: hangpose_stage = 9;
 pub const HANGPOSE_STAGE_TOO_LOOSE: hangpose_stage = 10;
 /// The object comes to rest firmly enough, but too much of what would carry it or be in its way was not seen by any camera.
 pub const HANGPOSE_STAGE_UNSEEN: hangpose_stage = 11;
+/// The region that was asked for has no place to hang on or by, or the object comes to rest outside of it:
+/// hangpose_request.on and hangpose_request.by.
+pub const HANGPOSE_STAGE_OUTSIDE_REGION: hangpose_stage = 12;
+/// The poses touch the scene or an object that hangs already: hangpose_request.scene_points and hangpose_request.hung.
+pub const HANGPOSE_STAGE_IN_SCENE: hangpose_stage = 13;
+/// The object stays, but hangs in another way than those that are allowed: hangpose_request.allow.
+pub const HANGPOSE_STAGE_OTHER_KIND: hangpose_stage = 14;
+/// The object stays, but no straight way in the direction that was asked for leads to the pose:
+/// hangpose_request.has_approach.
+pub const HANGPOSE_STAGE_NO_APPROACH: hangpose_stage = 15;
 
 pub(crate) fn stage(stage: Stage) -> hangpose_stage {
     match stage {
@@ -96,6 +107,10 @@ pub(crate) fn stage(stage: Stage) -> hangpose_stage {
         Stage::NeverRests => HANGPOSE_STAGE_NEVER_RESTS,
         Stage::TooLoose => HANGPOSE_STAGE_TOO_LOOSE,
         Stage::Unseen => HANGPOSE_STAGE_UNSEEN,
+        Stage::OutsideRegion => HANGPOSE_STAGE_OUTSIDE_REGION,
+        Stage::InScene => HANGPOSE_STAGE_IN_SCENE,
+        Stage::OtherKind => HANGPOSE_STAGE_OTHER_KIND,
+        Stage::NoApproach => HANGPOSE_STAGE_NO_APPROACH,
     }
 }
 
@@ -174,6 +189,14 @@ pub(crate) fn stage_text(stage: hangpose_stage) -> &'static CStr {
         HANGPOSE_STAGE_UNSEEN => {
             c"poses stay only if what no camera has seen is as it is guessed, which is not likely enough: another view of the object or of the supporter would help"
         }
+        HANGPOSE_STAGE_OUTSIDE_REGION => {
+            c"the object could hang only outside the region that was asked for, or the region has no place to hang on or by"
+        }
+        HANGPOSE_STAGE_IN_SCENE => c"every pose touches the scene or an object that hangs already",
+        HANGPOSE_STAGE_OTHER_KIND => c"poses stay, but none hangs in a way that was allowed",
+        HANGPOSE_STAGE_NO_APPROACH => {
+            c"poses stay, but no straight way in the direction that was asked for leads to any of them"
+        }
         _ => c"unknown stage",
     }
 }
@@ -198,6 +221,10 @@ mod tests {
             Stage::NeverRests,
             Stage::TooLoose,
             Stage::Unseen,
+            Stage::OutsideRegion,
+            Stage::InScene,
+            Stage::OtherKind,
+            Stage::NoApproach,
         ] {
             assert_eq!(stage_text(stage(core)).to_str().unwrap(), core.to_string());
         }

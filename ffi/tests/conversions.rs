@@ -3,9 +3,10 @@
 use hangpose::geometry::{Point, Pose, Vector};
 use hangpose::hanging::sites::{self, Cost, SiteMatch};
 use hangpose::hanging::{
-    Counts, HangingPose, Prediction, Rejection, Request, Rest, SearchCounts, SettlingCounts, Stage, contacts,
+    Counts, HangingPose, Prediction, Rejection, Request, Rest, SearchCounts, SettlingCounts, Stage,
+    Tolerance, contacts,
 };
-use hangpose::mechanics::{Contact, Margin, Unseen};
+use hangpose::mechanics::{Contact, Kind, Margin, Unseen};
 use hangpose::{Monitor, Params, Stop, Work, analyze_object, analyze_supporter, files, predict_poses};
 use hangpose_ffi::*;
 use std::path::Path;
@@ -23,6 +24,11 @@ fn every_count_of_a_prediction_reaches_its_field() {
         unseen: 31,
         probable: 29,
         firm: 30,
+        firm_as_preferred: 32,
+        in_scene: 33,
+        outside: 34,
+        other_kind: 35,
+        no_approach: 36,
     };
     let candidates = contacts::CandidateCounts { made: 21, clear: 22 };
     let search = SearchCounts::Contacts(contacts::Counts { candidates, ..Default::default() });
@@ -41,7 +47,9 @@ fn every_count_of_a_prediction_reaches_its_field() {
     assert_eq!([c.settling_candidates, c.settling_clear, c.settling_released], [21, 22, 23]);
     assert_eq!([c.settling_rotated_off, c.settling_slid_off, c.settling_moving], [24, 25, 26]);
     assert_eq!([c.settling_at_rest, c.settling_wedged, c.settling_unseen], [27, 28, 31]);
-    assert_eq!([c.settling_probable, c.settling_firm], [29, 30]);
+    assert_eq!([c.settling_probable, c.settling_firm, c.settling_firm_as_preferred], [29, 30, 32]);
+    assert_eq!([c.settling_in_scene, c.settling_outside], [33, 34]);
+    assert_eq!([c.settling_other_kind, c.settling_no_approach], [35, 36]);
     assert_eq!([c.rays, c.distance_queries], [1 << 40, 1 << 41]);
 
     let matching = sites::MatchingCounts { pairs: 11, fitting: 12, clear: 13 };
@@ -71,6 +79,7 @@ fn every_number_of_a_pose_reaches_its_field() {
     let mut rest = a_rest();
     (rest.pose, rest.margin) = (rest_pose, margin);
     (rest.sinking, rest.clearance, rest.probability) = (0.31, 0.32, 0.33);
+    (rest.kind, rest.tolerance) = (Kind::Capped, Tolerance { position: 0.37, rotation: 0.38 });
     rest.unseen = Unseen {
         object: 0.34,
         shadow: 0.35,
@@ -88,6 +97,7 @@ fn every_number_of_a_pose_reaches_its_field() {
     assert_eq!((c.unseen_object, c.unseen_shadow, c.unseen_supporter), (0.34, 0.35, 0.36));
     assert_eq!((c.object_view, c.supporter_view), ([0.6, 0.8, 0.0], [0.0, 0.6, 0.8]));
     assert_eq!((c.has_rest, c.sinking, c.clearance, c.probability), (1, 0.31, 0.32, 0.33));
+    assert_eq!((c.kind, c.tolerance_position, c.tolerance_rotation), (HANGPOSE_KIND_CAPPED, 0.37, 0.38));
     let m = c.margin;
     assert_eq!((m.tilts, m.least_tilt), (margin.tilts, 0.11));
     assert_eq!([m.jolt_time, m.tilted_sinking], [0.21, 0.22]);
@@ -118,11 +128,12 @@ fn every_number_of_a_contact_reaches_its_field() {
 fn a_pose_without_rest_and_match_says_so() {
     let c = hangpose_pose::from(&HangingPose::default());
     assert_eq!((c.position, c.quaternion), ([0.0; 3], [0.0, 0.0, 0.0, 1.0]));
-    assert_eq!((c.has_rest, c.contact_count, c.is_matched), (0, 0, 0));
+    assert_eq!((c.has_rest, c.kind, c.contact_count, c.is_matched), (0, 0, 0, 0));
     let (p, q, m) = (c.rest_position, c.rest_quaternion, c.margin);
     let rest = [c.probability, c.sinking, c.clearance, m.least_tilt, m.jolt_time, m.tilted_sinking]
         .into_iter()
         .chain([m.escape_rise, m.escape_ratio, m.knock_speed, m.centre_of_mass_radius])
+        .chain([c.tolerance_position, c.tolerance_rotation])
         .chain(p)
         .chain(q)
         .chain(m.tilts);

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// The source files in the order of the header.
-const SOURCES: [&str; 17] = [
+const SOURCES: [&str; 20] = [
     "version",
     "status",
     "detail",
@@ -18,6 +18,9 @@ const SOURCES: [&str; 17] = [
     "monitor",
     "object",
     "supporter",
+    "kind",
+    "region",
+    "request",
     "pose",
     "predict",
     "sample",

@@ -69,13 +69,14 @@ static hangpose_status predict(const hangpose_object *o, const hangpose_supporte
                                const hangpose_params *p) {
   hangpose_pose poses[POSES];
   hangpose_prediction found = {.struct_size = sizeof found};
-  return hangpose_predict(o, s, p, work, predict_size, NULL, poses, sizeof *poses, POSES, &found, &detail);
+  return hangpose_predict(o, s, NULL, p, work, predict_size, NULL, poses, sizeof *poses, POSES, &found,
+                          &detail);
 }
 // Whether the models still give the same poses as in set_up.
 static int is_unharmed(void) {
   hangpose_pose poses[POSES];
   hangpose_prediction found = {.struct_size = sizeof found};
-  hangpose_status status = hangpose_predict(object, supporter, &params, work, predict_size, NULL, poses,
+  hangpose_status status = hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, poses,
                                             sizeof *poses, POSES, &found, &detail);
   return status == HANGPOSE_OK && found.pose_count == right_count &&
          memcmp(poses, right, right_count * sizeof *poses) == 0;
@@ -110,8 +111,8 @@ static void set_up(void) {
   CHECK(hangpose_supporter_create(supporter_memory, supporter_size, &cloud, &params, NULL, &supporter,
                                   &detail) == HANGPOSE_OK);
   hangpose_prediction found = {.struct_size = sizeof found};
-  CHECK(hangpose_predict(object, supporter, &params, work, predict_size, NULL, right, sizeof *right, POSES,
-                         &found, &detail) == HANGPOSE_OK);
+  CHECK(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, right, sizeof *right,
+                         POSES, &found, &detail) == HANGPOSE_OK);
   right_count = found.pose_count;
   CHECK(is_unharmed());
 }

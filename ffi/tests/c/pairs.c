@@ -46,10 +46,10 @@ static int compare(const uint32_t *words) {
   if (hangpose_object_create(memory[0], sizes[0], &mesh, &params, NULL, &object, &detail) < 0) return -1;
   if (hangpose_supporter_create(memory[1], sizes[1], &cloud, &params, NULL, &supporter, &detail) < 0)
     return -1;
-  const hangpose_status status = hangpose_predict(object, supporter, &params, memory[2], sizes[2], NULL,
+  const hangpose_status status = hangpose_predict(object, supporter, NULL, &params, memory[2], sizes[2], NULL,
                                                   poses, sizeof *poses, CAPACITY, &found, &detail);
   const size_t first = offsetof(hangpose_prediction, pose_count);
-  const size_t counts = offsetof(hangpose_prediction, settling_firm) + sizeof(uint32_t) - first;
+  const size_t counts = offsetof(hangpose_prediction, settling_no_approach) + sizeof(uint32_t) - first;
   const uint64_t work[2] = {found.rays, found.distance_queries};
   int is_equal = (uint32_t)status == *next++;
   is_equal = is_equal && memcmp((const char *)&found + first, next, counts) == 0;

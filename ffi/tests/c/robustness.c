@@ -3,6 +3,7 @@
 // sanitizers, and under valgrind.
 #include <hangpose.h>
 #include <pthread.h>
+#include <stddef.h>
 #include <time.h>
 
 #include "depth.h"
@@ -31,7 +32,7 @@ static void sizes_and_alignment(void) {
     unsigned char *memory = guarded(64, 0);
     REFUSED(make_object(memory, sizes[i], &mesh, &params, NULL));
     REFUSED(make_supporter(memory, sizes[i], &cloud, &params));
-    REFUSED(hangpose_predict(object, supporter, &params, memory, sizes[i], NULL, &pose, sizeof pose, 1,
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, memory, sizes[i], NULL, &pose, sizeof pose, 1,
                              &found, &detail));
     REFUSED(hangpose_mesh_sample(&mesh, 0, memory, sizes[i], *points, *normals, 10, &detail));
     release(memory, 64, 0);
@@ -104,16 +105,16 @@ static void null_and_misaligned(void) {
     REFUSED(predict(bad[i], supporter, &params));
     REFUSED(predict(object, bad[i], &params));
     REFUSED(predict(object, supporter, bad[i]));
-    REFUSED(hangpose_predict(object, supporter, &params, NULL, predict_size, NULL, &pose, sizeof pose, 1,
-                             &found, &detail));
-    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, bad[i], sizeof pose, 1,
-                             &found, &detail));
-    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose, 1,
-                             bad[i], &detail));
-    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose, 0,
-                             &found, &detail));
-    REFUSED(
-        hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, 1, 1, &found, &detail));
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, NULL, predict_size, NULL, &pose, sizeof pose,
+                             1, &found, &detail));
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, bad[i], sizeof pose,
+                             1, &found, &detail));
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizeof pose,
+                             1, bad[i], &detail));
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizeof pose,
+                             0, &found, &detail));
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, 1, 1, &found,
+                             &detail));
     // An error is returned without a detail too, and an invalid detail is itself refused.
     REFUSED(hangpose_object_create(work, 0, bad[i], bad[i], NULL, bad[i], NULL));
     hangpose_detail small = {.struct_size = 4};
@@ -133,8 +134,8 @@ static void null_and_misaligned(void) {
   hangpose_detail *odd_detail = bad[1];
   REFUSED(hangpose_object_create(object_memory, 0, &mesh, &params, odd_monitor, &o, &detail));
   REFUSED(hangpose_supporter_create(supporter_memory, 0, &cloud, &params, odd_monitor, &s, &detail));
-  REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, odd_monitor, &pose, sizeof pose, 1,
-                           &found, &detail));
+  REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, odd_monitor, &pose,
+                           sizeof pose, 1, &found, &detail));
   REFUSED(hangpose_object_get_info(object, &object_info, odd_detail));
   CHECK(hangpose_object_get_info(object, &object_info, NULL) == HANGPOSE_OK);
   hangpose_monitor_cancel(NULL);
@@ -176,10 +177,10 @@ static void struct_sizes(void) {
     REFUSED(hangpose_supporter_get_site(supporter, 0, &supporter_site, &detail));
     REFUSED(hangpose_object_get_contact(object, 0, &object_contact, &detail));
     REFUSED(hangpose_supporter_get_contact(supporter, 0, &supporter_contact, &detail));
-    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose, 1,
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizeof pose,
+                             1, &found, &detail));
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizes[i], 1,
                              &found, &detail));
-    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizes[i], 1, &found,
-                             &detail));
   }
   CHECK(is_unharmed());
 }
@@ -200,7 +201,7 @@ static void counts_and_numbers(void) {
     REFUSED(hangpose_mesh_sample(&mesh, 0, work, predict_size, *points, *normals, counts[i], &detail));
     hangpose_pose pose;
     hangpose_prediction found = {.struct_size = sizeof found};
-    REFUSED(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose,
+    REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizeof pose,
                              counts[i], &found, &detail));
     CHECK(hangpose_sample_bytes(counts[i]) > 0);
   }
@@ -299,15 +300,15 @@ static void overlaps(void) {
   (void)s;
   // Memory of the models as output.
   *d_inside = detail;
-  CHECK(hangpose_predict(object, supporter, &params, object_memory, object_size, NULL, &pose, sizeof pose, 1,
-                         &found, NULL) == HANGPOSE_ERROR_OVERLAP);
-  CHECK(hangpose_predict(object, supporter, &params, work, predict_size, NULL,
+  CHECK(hangpose_predict(object, supporter, NULL, &params, object_memory, object_size, NULL, &pose,
+                         sizeof pose, 1, &found, NULL) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL,
                          (void *)(supporter_memory + 4096), sizeof pose, 1, &found,
                          NULL) == HANGPOSE_ERROR_OVERLAP);
-  CHECK(hangpose_predict(object, supporter, &params, work, predict_size, NULL, &pose, sizeof pose,
+  CHECK(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizeof pose,
                          UINT32_MAX / 2, &found, NULL) < 0);
-  CHECK(hangpose_predict(object, supporter, &params, work, predict_size, NULL, (void *)&found, sizeof pose, 1,
-                         &found, NULL) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, (void *)&found,
+                         sizeof pose, 1, &found, NULL) == HANGPOSE_ERROR_OVERLAP);
   c = cloud;
   c.points = (float *)(void *)(supporter_memory + 4096);
   CHECK(hangpose_supporter_update(supporter, &c, &params, NULL, &detail) == HANGPOSE_ERROR_OVERLAP);
@@ -318,6 +319,103 @@ static void overlaps(void) {
   CHECK(hangpose_mesh_sample(&mesh, 0, memory, size, *points, *points, 10, &detail) ==
         HANGPOSE_ERROR_OVERLAP);
   release(memory, size, 0);
+  CHECK(is_unharmed());
+}
+
+static hangpose_status ask(const hangpose_request *request) {
+  hangpose_pose poses[POSES];
+  hangpose_prediction found = {.struct_size = sizeof found};
+  return hangpose_predict(object, supporter, request, &params, work, predict_size, NULL, poses, sizeof *poses,
+                          POSES, &found, &detail);
+}
+
+static void requests(void) {
+  static const uint32_t indices[2] = {0, UINT32_MAX};
+  static unsigned char odd[sizeof(hangpose_request) + 8];
+  const uint32_t sizes[] = {0, 1, 4, 1000, UINT32_MAX};
+  const uint32_t words[] = {0xFFFFFFFF, 0x7F800000, 0xFF800000, 0x80000001, 0x4B000000};
+  hangpose_request good, r;
+  CHECK(hangpose_request_init(&good, sizeof good, &detail) == HANGPOSE_OK);
+  REFUSED(hangpose_request_init(NULL, sizeof good, &detail));
+  REFUSED(hangpose_request_init((void *)(odd + 1), sizeof good, &detail));
+  REFUSED(hangpose_request_init((void *)&detail, sizeof good, &detail));
+  REFUSED(ask((void *)(odd + 1)));
+  CHECK(ask(&good) == HANGPOSE_OK);
+  for (int i = 0; i < 5; ++i) {
+    REFUSED(hangpose_request_init(&r, sizes[i], &detail));
+    r = good;
+    r.struct_size = sizes[i];
+    REFUSED(ask(&r));
+  }
+  // Every word before the pointers in turn: a value in its range is accepted, any other is named in the
+  // detail.
+  good.has_approach = 1;
+  good.approach_direction[2] = -1;
+  good.on.shape = HANGPOSE_REGION_BOX;
+  for (size_t at = 1; at < (offsetof(hangpose_request, on) + offsetof(hangpose_region, points)) / 4; ++at) {
+    for (int i = 0; i < 5; ++i) {
+      r = good;
+      memcpy((char *)&r + 4 * at, &words[i], 4);
+      CHECK(ask(&r) >= 0 || strncmp(detail.field, "request.", 8) == 0);
+    }
+  }
+  good.has_approach = 0;
+  good.on = (hangpose_region){.shape = HANGPOSE_REGION_TRIANGLES,
+                              .radius = 0.01f,
+                              .points = *vertices,
+                              .point_count = RING_VERTICES,
+                              .triangles = *triangles,
+                              .triangle_count = RING_TRIANGLES,
+                              .indices = indices,
+                              .index_count = 1};
+  CHECK(ask(&good) >= 0);
+  for (int i = 0; i < 2; ++i) {
+    const void *const bad = i == 0 ? NULL : odd + 1;
+    r = good, r.on.points = bad;
+    REFUSED(ask(&r));
+    r = good, r.on.triangles = bad;
+    REFUSED(ask(&r));
+    r = good, r.on.indices = bad;
+    REFUSED(ask(&r));
+    r = good, r.by = good.on, r.by.points = bad;
+    REFUSED(ask(&r));
+    r = good, r.scene_points = bad, r.scene_point_count = 1;
+    REFUSED(ask(&r));
+    r = good, r.hung = bad, r.hung_count = 1;
+    REFUSED(ask(&r));
+    r.hung_count = UINT32_MAX;
+    REFUSED(ask(&r));
+  }
+  r = good, r.on.index_count = 2;
+  CHECK(ask(&r) == HANGPOSE_ERROR_INDEX && detail.index == 1 && detail.value == UINT32_MAX);
+  // What hangs already, and memory of the call as input.
+  hangpose_hung hung = {.object = object, .position = {0, 0, 1}, .quaternion = {0, 0, 0, 1}};
+  hangpose_request_init(&good, sizeof good, NULL);
+  good.hung = &hung;
+  good.hung_count = 1;
+  CHECK(ask(&good) == HANGPOSE_OK);
+  hung.object = (void *)supporter;
+  CHECK(ask(&good) == HANGPOSE_ERROR_HANDLE && detail.index == 0);
+  hung.object = NULL;
+  CHECK(ask(&good) == HANGPOSE_ERROR_NULL);
+  good.hung_count = 0;
+  unsigned char *before = work;
+  work = guarded(predict_size, 0);
+  good.scene_points = (float *)(void *)work;
+  good.scene_point_count = 1;
+  CHECK(ask(&good) == HANGPOSE_ERROR_OVERLAP);
+  good.scene_points = NULL, good.scene_point_count = 0, good.by.points = (float *)(void *)work;
+  good.by.point_count = 1;
+  CHECK(ask(&good) == HANGPOSE_ERROR_OVERLAP);
+  good.by.points = NULL, good.hung = (void *)work, good.hung_count = 1;
+  memcpy(work, &(hangpose_hung){object, {0, 0, 1}, {0, 0, 0, 1}}, sizeof hung);
+  CHECK(ask(&good) == HANGPOSE_ERROR_OVERLAP);
+  hangpose_request *inside = (void *)work;
+  hangpose_request_init(inside, sizeof *inside, NULL);
+  CHECK(ask(inside) == HANGPOSE_ERROR_OVERLAP);
+  release(work, predict_size, 0);
+  work = before;
+  CHECK(hangpose_kind_string(UINT32_MAX) != NULL);
   CHECK(is_unharmed());
 }
 
@@ -406,8 +504,8 @@ static void *predict_again_and_again(void *tally) {
     hangpose_pose poses[POSES];
     hangpose_prediction found = {.struct_size = sizeof found};
     hangpose_detail said = {.struct_size = sizeof said};
-    const hangpose_status status = hangpose_predict(object, supporter, &params, mine, predict_size, &shared,
-                                                    poses, sizeof *poses, POSES, &found, &said);
+    const hangpose_status status = hangpose_predict(object, supporter, NULL, &params, mine, predict_size,
+                                                    &shared, poses, sizeof *poses, POSES, &found, &said);
     nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);  // leaves time for an update
     if (status == HANGPOSE_OK) ++((int *)tally)[0];
     if (status == HANGPOSE_OK && memcmp(poses, right, right_count * sizeof *poses) != 0) ++((int *)tally)[1];
@@ -442,6 +540,7 @@ int main(void) {
   struct_sizes();
   counts_and_numbers();
   overlaps();
+  requests();
   handles();
   other_params();
   updates();

@@ -68,6 +68,46 @@ int main() {
   CHECK(found && found->status == HANGPOSE_OK && found->poses.size() >= 1 && found->poses.data() == poses);
   CHECK(found->poses[0].has_rest == 1 && found->poses[0].probability >= params.min_probability);
   CHECK(!hangpose::contacts(found->poses[0]).empty() && found->poses[0].is_matched == 0);
+  // Requests: the default is anything anywhere; each part of one reaches the call.
+  hangpose::request request;
+  hangpose::pose again[3];
+  auto same = hangpose::predict(moved, *peg, request, params, again);
+  CHECK(same && same->poses.size() == found->poses.size() && std::memcmp(again, poses, sizeof again) == 0);
+  CHECK(poses[0].kind == HANGPOSE_KIND_THREADED && poses[0].tolerance_position > 0.0f);
+  request.on = hangpose::region::within({{{-1.0f, 0.06f, -1.0f}, {1.0f, 1.0f, 1.0f}}});
+  auto near_end = hangpose::predict(moved, *peg, request, params, again);
+  CHECK(near_end && near_end->status == HANGPOSE_OK && hangpose::contacts(again[0])[0].position[1] >= 0.06f);
+  const std::vector<hangpose::vec3> here{{0.0f, 0.01f, 0.004f}, {0.0f, 9.0f, 0.0f}};
+  const std::vector<std::uint32_t> first{0}, no_indices, beyond{7};
+  request.on = hangpose::region::around(here, first, 0.02f);
+  auto near_start = hangpose::predict(moved, *peg, request, params, again);
+  CHECK(near_start && near_start->status == HANGPOSE_OK &&
+        hangpose::contacts(again[0])[0].position[1] <= 0.04f);
+  request.on = hangpose::region::around(here, no_indices, 0.02f);
+  auto chosen = hangpose::predict(moved, *peg, request, params, again);
+  CHECK(!chosen && std::strcmp(chosen.error().field(), "request.on.index_count") == 0);
+  request.on = hangpose::region();
+  request.by = hangpose::region::around(vertices, triangles, beyond, 0.01f);
+  CHECK(hangpose::predict(moved, *peg, request, params, again));
+  request.by = hangpose::region::around(here, triangles, first, 0.01f);
+  auto dangling = hangpose::predict(moved, *peg, request, params, again);
+  CHECK(!dangling && dangling.error().status() == HANGPOSE_ERROR_INDEX);
+  request.by = hangpose::region::around({}, 0.01f);
+  auto no_points = hangpose::predict(moved, *peg, request, params, again);
+  CHECK(!no_points && std::strcmp(no_points.error().field(), "request.by.point_count") == 0);
+  request.by = hangpose::region();
+  request.come_along({0.0f, 0.0f, -1.0f}, 0.0f, 0.1f);
+  auto from_above = hangpose::predict(moved, *peg, request, params, again);
+  CHECK(from_above && from_above->stage == HANGPOSE_STAGE_NO_APPROACH);
+  request.has_approach = 0;
+  request.avoid(hangpose::view<const hangpose::vec3>(nowhere));
+  auto no_scene = hangpose::predict(moved, *peg, request, params, again);
+  CHECK(!no_scene && std::strcmp(no_scene.error().field(), "request.scene_points") == 0);
+  const std::vector<hangpose::hung> hanging{{moved, poses[0]}};
+  request.avoid(none).avoid(hanging);
+  auto beside = hangpose::predict(moved, *peg, request, params, again);
+  CHECK(beside && beside->status == HANGPOSE_OK &&
+        std::memcmp(again[0].rest_position, poses[0].rest_position, sizeof(hangpose::vec3)) != 0);
   auto nothing = hangpose::predict(moved, *peg, params, hangpose::view<hangpose::pose>());
   CHECK(!nothing);
 

@@ -1,0 +1,63 @@
+// Hangs mugs on a mug tree, one after the other: the first where it is asked for, all of them away from a
+// wall and from each other, until none fits: ./09_requests mug.obj mug_tree.obj
+#include <cstdio>
+#include <hangpose.hpp>
+#include <vector>
+
+#include "obj_file.hpp"  // ObjFile: vertices and triangles
+
+static int fail(const hangpose::error &why) {
+  std::fprintf(stderr, "%s: %s: %s\n", hangpose_status_string(why.status()), why.field(), why.message());
+  return 1;
+}
+
+// Points of a wall in the plane y = 0.12 m, 5 mm apart, as a camera would see them.
+static std::vector<hangpose::vec3> wall() {
+  std::vector<hangpose::vec3> points;
+  for (int i = 0; i < 80; ++i)
+    for (int k = 0; k < 80; ++k)
+      points.push_back({0.005f * static_cast<float>(i) - 0.2f, 0.12f, 0.005f * static_cast<float>(k)});
+  return points;
+}
+
+int main(int count, char **arguments) {
+  if (count != 3) {
+    std::fprintf(stderr, "usage: %s object.obj supporter.obj\n", arguments[0]);
+    return 2;
+  }
+  const ObjFile mug_file(arguments[1]), tree_file(arguments[2]);
+  const hangpose::params params;
+  const auto mug = hangpose::object::create({mug_file.vertices, mug_file.triangles}, params);
+  if (!mug) return fail(mug.error());
+  std::vector<hangpose::vec3> points(10000), normals(10000);
+  if (auto drawn = hangpose::sample({tree_file.vertices, tree_file.triangles}, points, normals); !drawn)
+    return fail(drawn.error());
+  const auto tree = hangpose::supporter::create({points, normals}, params);
+  if (!tree) return fail(tree.error());
+
+  // What hangs and stands around must outlive the request, which points to it.
+  const std::vector<hangpose::vec3> scene = wall(), here{{0.06f, 0.0f, 0.165f}};
+  std::vector<hangpose::hung> hanging;
+  hangpose::request request;
+  request.avoid(scene);
+  request.allow = HANGPOSE_KIND_THREADED | HANGPOSE_KIND_HOOKED;
+  request.on = hangpose::region::around(here, 0.03f);
+  for (;;) {
+    hangpose::pose best[1];
+    const auto found = hangpose::predict(*mug, *tree, request, params, best);
+    if (!found) return fail(found.error());
+    if (found->status == HANGPOSE_REJECTED) {
+      std::printf("no more: %s\n", found->reason());
+      break;
+    }
+    const auto &p = best[0].position;
+    std::printf("mug %zu: release at (%.4f, %.4f, %.4f) m, %s with probability %.2f; may be off by %.1f mm\n",
+                hanging.size() + 1, p[0], p[1], p[2], hangpose_kind_string(best[0].kind), best[0].probability,
+                1000 * best[0].tolerance_position);
+    // The next mug may hang anywhere, but not in this one.
+    hanging.emplace_back(*mug, best[0]);
+    request.avoid(hanging);
+    request.on = hangpose::region();
+  }
+  return hanging.size() > 1 ? 0 : 3;
+}
