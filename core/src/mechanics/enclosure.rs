@@ -1,127 +1,75 @@
-//! How the object encloses a point: all around in a plane, with a way out on both sides of it or on one.
+//! How the object surrounds a point of the bar that carries it: as a loop, as a cavity, or with a way out.
 
 use super::Body;
-use crate::geometry::{Point, Vector, any_perpendicular, fibonacci_direction, rotate_about, unit_or};
+use crate::geometry::{Point, Vector, any_perpendicular, fibonacci_direction, unit_or};
 use crate::monitor::{Meter, Stop};
 
-/// How the object encloses a ball that lies in a plane.
+/// A ball on the axis of a bar, and the object around it, in object coordinates.
+pub(super) struct Probe<'a> {
+    pub(super) body: &'a Body<'a>,
+    /// Centre of the ball, metres.
+    pub(super) at: Point,
+    /// Radius of the ball, metres: a gap through which it does not pass is closed.
+    pub(super) radius: f32,
+}
+
+/// How the object surrounds a ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Enclosure {
-    /// The ball can leave in the plane.
+    /// Ways lead out all along the bar.
     Open,
-    /// It cannot leave in the plane, but on both sides of it: a bar along the plane's normal runs through a loop.
+    /// Ways lead out towards both ends of the bar, and the material is all around between them.
     Loop,
-    /// It cannot leave in the plane, and on one side of it at most: a tip is in a cavity.
+    /// Nearly all ways that lead out lead through one opening below.
     Cavity,
 }
 
-/// Straight ways out that are tried in a plane, evenly around.
-const WAYS: usize = 32;
-/// Ways out that are tried on either side of a plane.
-const SIDE_WAYS: usize = 48;
-/// Least cosine between these and the plane's normal.
-const SIDE_COSINE: f32 = 0.1;
-/// Cells along each side of the grid on which crooked ways out are looked for. A larger number finds narrower ones, at more time.
-const CELLS: usize = 96;
-/// Most steps of a way. One step is at least half the ball's radius.
+/// Rows of the grid of directions, from one end of the bar to the other: 5 degrees each.
+const ROWS: usize = 36;
+/// Columns of the grid of directions, around the bar.
+const COLUMNS: usize = 2 * ROWS;
+/// Rows that lead towards an end of the bar: 60 degrees around its axis, as far as a thin loop hangs askew.
+const END_ROWS: usize = ROWS / 3;
+/// Growth of the ball with its distance, no unit: half of a row, so that no material passes between two directions.
+const GROWTH: f32 = 0.044;
+/// Free ways that lead to an end at least, of [`ROWS`] times [`COLUMNS`]. Fewer are a hole through which no bar passes.
+const MIN_WAYS: usize = 16;
+/// Most steps of a way.
 const MAX_STEPS: usize = 200;
-
-impl Enclosure {
-    /// How `body` encloses a ball of `radius` metres at `at` in the plane with unit normal `normal`, in object coordinates.
-    pub(super) fn across(
-        body: &Body,
-        at: &Point,
-        normal: &Vector,
-        radius: f32,
-        meter: &mut Meter,
-    ) -> Result<Self, Stop> {
-        let (u, ball) = (any_perpendicular(*normal), Ball { body, at, radius });
-        for k in 0..WAYS {
-            // Opposite ways first: a hook is open on one side.
-            let turn = (k / 2) as f32 / WAYS as f32 + 0.5 * (k % 2) as f32;
-            if !ball.is_stopped(&rotate_about(*normal, core::f32::consts::TAU * turn, u), meter)? {
-                return Ok(Self::Open);
-            }
-        }
-        if Grid::around(&ball, [u, normal.cross(&u)]).lets_out(&ball, meter)? {
-            return Ok(Self::Open);
-        }
-        for side in [*normal, -normal] {
-            let mut is_closed = true;
-            for way in (0..2 * SIDE_WAYS).map(|k| fibonacci_direction(k, 2 * SIDE_WAYS)) {
-                is_closed = is_closed && (way.dot(&side) < SIDE_COSINE || ball.is_stopped(&way, meter)?);
-            }
-            if is_closed {
-                return Ok(Self::Cavity);
-            }
-        }
-        Ok(Self::Loop)
-    }
-}
 
 /// Directions that are probed around a ball in a cavity.
 const SPHERE_WAYS: usize = 64;
 /// Largest share of them that leads out of a cavity. From a point on its rim it would be a half.
 const MAX_OPENING: f32 = 0.45;
 /// Cosine to the axis of the opening below which a way does not lead out of it, but through a hole.
-const OPENING_COSINE: f32 = -0.2;
-/// Directions through holes that a cavity may have, as a cap has below its strap. Two opposite cones lead out of a loop.
+const HOLE_COSINE: f32 = -0.2;
+/// Directions through holes that a cavity may have, as a cap has below its strap.
 const MAX_HOLES: usize = 2;
+/// Largest cosine between up and the axis of the opening of a cavity that stands over a tip.
+const MAX_RISE: f32 = -0.25;
 
-/// Whether a ball of `radius` metres at `at` is in a cavity with one opening, which does not face up. In object coordinates.
-pub(super) fn is_in_cavity(
-    body: &Body,
-    at: &Point,
-    up: &Vector,
-    radius: f32,
-    meter: &mut Meter,
-) -> Result<bool, Stop> {
-    let mut ways = heapless::Vec::<Vector, SPHERE_WAYS>::new();
-    for k in 0..SPHERE_WAYS {
-        let way = fibonacci_direction(k, SPHERE_WAYS);
-        if !(Ball { body, at, radius }).is_stopped(&way, meter)? {
-            let _ = ways.push(way);
-            if ways.len() as f32 > MAX_OPENING * SPHERE_WAYS as f32 {
-                return Ok(false);
-            }
+impl Probe<'_> {
+    /// How the object surrounds the ball on a bar along the unit vector `bar`.
+    pub(super) fn enclosure(&self, bar: &Vector, up: &Vector, meter: &mut Meter) -> Result<Enclosure, Stop> {
+        if Directions::around(bar).ends(self, meter)? == Ends::Parted {
+            return Ok(Enclosure::Loop);
         }
+        Ok(if self.is_in_cavity(up, meter)? { Enclosure::Cavity } else { Enclosure::Open })
     }
-    let axis = unit_or(ways.iter().sum(), Vector::zeros());
-    let holes = ways.iter().filter(|way| way.dot(&axis) < OPENING_COSINE).count();
-    Ok(!ways.is_empty() && holes <= MAX_HOLES && axis.dot(up) < 0.0)
-}
 
-/// Whether the object stops a ball of `radius` metres on the straight way from `at` in the direction `way`, in object
-/// coordinates.
-pub(super) fn is_stopped(
-    body: &Body,
-    at: &Point,
-    radius: f32,
-    way: &Vector,
-    meter: &mut Meter,
-) -> Result<bool, Stop> {
-    Ball { body, at, radius }.is_stopped(way, meter)
-}
-
-/// A ball in object coordinates, metres.
-struct Ball<'a> {
-    body: &'a Body<'a>,
-    at: &'a Point,
-    radius: f32,
-}
-
-impl Ball<'_> {
-    /// Whether the object stops the ball on a straight way.
-    fn is_stopped(&self, way: &Vector, meter: &mut Meter) -> Result<bool, Stop> {
+    /// Whether the object stops the ball on a straight way. The ball grows on it by `growth` metres a metre.
+    pub(super) fn is_stopped(&self, way: &Vector, growth: f32, meter: &mut Meter) -> Result<bool, Stop> {
         let mut travelled = 0.0;
         for step in 0..MAX_STEPS {
             let point = self.at + way * travelled;
-            if self.is_out(&point) {
+            let radius = self.radius.max(growth * travelled);
+            if self.body.is_beyond(&point, radius) {
                 meter.distance_queries(step)?;
                 return Ok(false);
             }
-            let gap = self.body.field.distance(&point) - self.radius;
-            if gap < 0.0 && step > 0 {
+            let gap = self.body.field.distance(&point) - radius;
+            // At the start the ball is known to be clear. Far from the surface the field is only a lower bound.
+            if gap < 0.0 && step > 0 && (gap + radius < 0.0 || self.body.surface.is_within(&point, radius)) {
                 meter.distance_queries(step)?;
                 return Ok(true);
             }
@@ -131,75 +79,153 @@ impl Ball<'_> {
         Ok(true)
     }
 
-    /// Whether the ball at `point` is outside the object's bounding sphere.
-    fn is_out(&self, point: &Point) -> bool {
-        self.body.is_beyond(point, self.radius)
+    /// Whether the ball is in a cavity with one opening, which faces down.
+    fn is_in_cavity(&self, up: &Vector, meter: &mut Meter) -> Result<bool, Stop> {
+        let mut ways = heapless::Vec::<Vector, SPHERE_WAYS>::new();
+        for k in 0..SPHERE_WAYS {
+            let way = fibonacci_direction(k, SPHERE_WAYS);
+            if !self.is_stopped(&way, 0.0, meter)? {
+                let _ = ways.push(way);
+                if ways.len() as f32 > MAX_OPENING * SPHERE_WAYS as f32 {
+                    return Ok(false);
+                }
+            }
+        }
+        let axis = unit_or(ways.iter().sum(), Vector::zeros());
+        let holes = ways.iter().filter(|way| way.dot(&axis) < HOLE_COSINE).count();
+        Ok(!ways.is_empty() && holes <= MAX_HOLES && axis.dot(up) < MAX_RISE)
     }
 }
 
-/// Cells of a plane around the ball's start, which is in the middle one.
-struct Grid {
-    axes: [Vector; 2],
-    /// Width of a cell, metres.
-    width: f32,
-    states: [State; CELLS * CELLS],
+/// The directions around a bar, which is the polar axis.
+struct Directions {
+    bar: Vector,
+    across: [Vector; 2],
+    states: [State; ROWS * COLUMNS],
+    /// Whether free ways join the two ends of the bar.
+    are_joined: bool,
 }
 
 #[derive(Clone, Copy, PartialEq)]
 enum State {
     Unknown,
-    /// The ball gets there.
-    Reached,
-    /// The object is in the way.
-    Blocked,
+    /// The way is free.
+    Free,
+    /// The way is free, and free ones join it with the first end of the bar.
+    First,
+    /// The way is free, and free ones join it with the second end of the bar.
+    Second,
+    /// The object stops the ball.
+    Stopped,
 }
 
-impl Grid {
-    fn around(ball: &Ball, axes: [Vector; 2]) -> Self {
-        let far = (ball.at - ball.body.centre).norm() + ball.body.reach + ball.radius;
-        Self { axes, width: far / (CELLS / 2 - 1) as f32, states: [State::Unknown; CELLS * CELLS] }
+/// What leads towards the ends of a bar.
+#[derive(Clone, Copy, PartialEq)]
+enum Ends {
+    /// Nothing leads towards one of them.
+    Closed,
+    /// Free ways lead towards both, and join them around the object's material.
+    Joined,
+    /// Free ways lead towards both, and material is all around between them.
+    Parted,
+}
+
+impl Directions {
+    fn around(bar: &Vector) -> Self {
+        let first = any_perpendicular(*bar);
+        let across = [first, bar.cross(&first)];
+        Self { bar: *bar, across, states: [State::Unknown; ROWS * COLUMNS], are_joined: false }
     }
 
-    fn centre(&self, ball: &Ball, column: usize, row: usize) -> Point {
-        let offset = |index: usize| (index as f32 - (CELLS / 2) as f32) * self.width;
-        ball.at + self.axes[0] * offset(column) + self.axes[1] * offset(row)
+    /// The unit vector in the middle of a cell.
+    fn way(&self, row: usize, column: usize) -> Vector {
+        let angle = |index: usize, count: usize, whole: f32| whole * (index as f32 + 0.5) / count as f32;
+        let (sin, cos) = libm::sincosf(angle(row, ROWS, core::f32::consts::PI));
+        let (aside, ahead) = libm::sincosf(angle(column, COLUMNS, core::f32::consts::TAU));
+        self.bar * cos + (self.across[0] * ahead + self.across[1] * aside) * sin
     }
 
-    /// Whether the ball gets out from cell to cell. Sweeps in alternating order need no queue, and few rounds.
-    fn lets_out(&mut self, ball: &Ball, meter: &mut Meter) -> Result<bool, Stop> {
-        let middle = CELLS / 2;
-        self.states[middle * CELLS + middle] = State::Reached;
-        // Nothing fits between the centres of two neighbouring cells that are both farther than this from the object.
-        let clear = ball.radius.max(0.5 * self.width);
-        let mut is_backwards = false;
-        loop {
-            let (mut has_changed, mut queries) = (false, 0);
-            for k in 0..CELLS * CELLS {
-                let index = if is_backwards { CELLS * CELLS - 1 - k } else { k };
-                let (row, column) = (index / CELLS, index % CELLS);
-                let is_reached = |at: usize| self.states[at] == State::Reached;
-                let is_next = self.states[index] == State::Unknown
-                    && (column > 0 && is_reached(index - 1)
-                        || column + 1 < CELLS && is_reached(index + 1)
-                        || row > 0 && is_reached(index - CELLS)
-                        || row + 1 < CELLS && is_reached(index + CELLS));
-                if !is_next {
-                    continue;
+    /// What leads towards the ends of the bar.
+    fn ends(&mut self, probe: &Probe, meter: &mut Meter) -> Result<Ends, Stop> {
+        let (count, rows) = (ROWS * COLUMNS, END_ROWS * COLUMNS);
+        if !self.join_nearest(0..rows, State::First, probe, meter)? {
+            return Ok(Ends::Closed);
+        }
+        // What is joined with the first end may lead towards the second one as well.
+        let is_second = self.join_nearest((count - rows..count).rev(), State::Second, probe, meter)?;
+        Ok(match (is_second, self.are_joined) {
+            (_, true) => Ends::Joined,
+            (true, false) => Ends::Parted,
+            (false, false) => Ends::Closed,
+        })
+    }
+
+    /// Joins free ways from the first of some cells that is free, passing over holes. Returns whether there is one.
+    fn join_nearest(
+        &mut self,
+        cells: impl Iterator<Item = usize>,
+        end: State,
+        probe: &Probe,
+        meter: &mut Meter,
+    ) -> Result<bool, Stop> {
+        for index in cells {
+            match self.look(index, probe, meter)? {
+                State::Free => {
+                    self.states[index] = end;
+                    if self.spread(end, probe, meter)? >= MIN_WAYS {
+                        return Ok(true);
+                    }
+                    self.states
+                        .iter_mut()
+                        .filter(|state| **state == end)
+                        .for_each(|state| *state = State::Stopped);
                 }
-                let point = self.centre(ball, column, row);
-                if ball.is_out(&point) {
-                    return Ok(true);
+                State::First => {
+                    self.are_joined = true;
+                    return Ok(false);
                 }
-                queries += 1;
-                let is_free = ball.body.field.distance(&point) > clear;
-                self.states[index] = if is_free { State::Reached } else { State::Blocked };
-                has_changed = true;
+                _ => {}
             }
-            meter.distance_queries(queries)?;
-            if !has_changed {
-                return Ok(false);
+        }
+        Ok(false)
+    }
+
+    /// Looks whether the way of a cell is free, once.
+    fn look(&mut self, index: usize, probe: &Probe, meter: &mut Meter) -> Result<State, Stop> {
+        if self.states[index] == State::Unknown {
+            let way = self.way(index / COLUMNS, index % COLUMNS);
+            let is_stopped = probe.is_stopped(&way, GROWTH, meter)?;
+            self.states[index] = if is_stopped { State::Stopped } else { State::Free };
+        }
+        Ok(self.states[index])
+    }
+
+    /// Joins free ways next to those of an end, in sweeps of alternating order, until there are no more. Returns their number.
+    fn spread(&mut self, end: State, probe: &Probe, meter: &mut Meter) -> Result<usize, Stop> {
+        let (mut count, mut is_backwards) = (1, false);
+        loop {
+            let before = count;
+            for k in 0..ROWS * COLUMNS {
+                let index = if is_backwards { ROWS * COLUMNS - 1 - k } else { k };
+                let is_open = matches!(self.states[index], State::Unknown | State::Free);
+                if is_open && self.is_next_to(end, index) && self.look(index, probe, meter)? == State::Free {
+                    self.states[index] = end;
+                    count += 1;
+                }
+            }
+            if count == before {
+                return Ok(count);
             }
             is_backwards = !is_backwards;
         }
+    }
+
+    fn is_next_to(&self, end: State, index: usize) -> bool {
+        let (row, column) = (index / COLUMNS, index % COLUMNS);
+        let is_there = |row: usize, column: usize| self.states[row * COLUMNS + column] == end;
+        is_there(row, (column + 1) % COLUMNS)
+            || is_there(row, (column + COLUMNS - 1) % COLUMNS)
+            || row > 0 && is_there(row - 1, column)
+            || row + 1 < ROWS && is_there(row + 1, column)
     }
 }

@@ -1,8 +1,8 @@
 //! How an object hangs: by a loop, by a hook, over a tip, or only by friction.
 
-use super::enclosure::{Enclosure, is_in_cavity, is_stopped};
+use super::enclosure::{Enclosure, Probe};
 use super::{Body, Contact, Support};
-use crate::geometry::{Point, Pose, Vector, any_perpendicular, principal_direction, rotate_about};
+use crate::geometry::{Pose, Vector, any_perpendicular, principal_direction, rotate_about};
 use crate::monitor::{Meter, Stop};
 use core::fmt;
 
@@ -83,12 +83,6 @@ const BAR_DEPTHS: [f32; 4] = [0.004, 0.0025, 0.0015, 0.001];
 const MIN_ROOM: f32 = 0.6;
 /// Thickness of the probe, as a share of that depth: a gap through which it does not pass is closed.
 const PROBE_RADIUS: f32 = 0.4;
-/// Tilts of the planes in which a loop is looked for, against the plane across the bar, radians: 35 and 65 degrees. A thin ring
-/// may hang that askew, and the direction of a bar next to a post is not exact.
-const TILTS: [f32; 2] = [0.61, 1.13];
-/// Directions in which these planes tilt.
-const TILT_DIRECTIONS: usize = 8;
-
 /// How the object hangs at `rest`, carried by `contacts`.
 pub(crate) fn kind_of(
     scene: (&Body, &Support),
@@ -104,9 +98,9 @@ pub(crate) fn kind_of(
         if contact.force < CARRYING_SHARE || contact.normal.dot(up) < CARRYING_COSINE {
             continue;
         }
-        let Some(probe) = Probe::below(body, &to_object, contact) else { continue };
+        let Some(probe) = probe_below(body, &to_object, contact) else { continue };
         let bar = bar_direction(support, contact);
-        match probe.enclosure(body, &to_object, &bar, up, meter)? {
+        match probe.enclosure(&(to_object * bar), &(to_object * up), meter)? {
             Enclosure::Loop => return Ok(Kind::Threaded),
             Enclosure::Cavity => kind = Kind::Capped,
             Enclosure::Open => {
@@ -129,56 +123,12 @@ fn bar_direction(support: &Support, contact: &Contact) -> Vector {
     along.unwrap_or_else(|| principal_direction(&support.tree, &contact.position, BAR_RADIUS))
 }
 
-/// A ball on the axis of the bar, in object coordinates.
-struct Probe {
-    at: Point,
-    radius: f32,
-}
-
-impl Probe {
-    /// The probe below a contact; `None` if there is no room for one, as between two layers of the object.
-    fn below(body: &Body, to_object: &Pose, contact: &Contact) -> Option<Self> {
-        BAR_DEPTHS.into_iter().find_map(|depth| {
-            let at = to_object * (contact.position - contact.normal * depth);
-            (body.field.distance(&at) > MIN_ROOM * depth).then_some(Self { at, radius: PROBE_RADIUS * depth })
-        })
-    }
-
-    /// How the object encloses the probe, for a bar along `bar`, in supporter coordinates.
-    fn enclosure(
-        &self,
-        body: &Body,
-        to_object: &Pose,
-        bar: &Vector,
-        up: &Vector,
-        meter: &mut Meter,
-    ) -> Result<Enclosure, Stop> {
-        let (bar, up) = (to_object * bar, to_object * up);
-        if is_in_cavity(body, &self.at, &up, self.radius, meter)? {
-            return Ok(Enclosure::Cavity);
-        }
-        for normal in core::iter::once(bar).chain(tilted(bar)) {
-            if Enclosure::across(body, &self.at, &normal, self.radius, meter)? == Enclosure::Loop {
-                return Ok(Enclosure::Loop);
-            }
-        }
-        // A shallow cavity over a tip is closed in the level plane alone.
-        match Enclosure::across(body, &self.at, &up, self.radius, meter)? {
-            Enclosure::Cavity => Ok(Enclosure::Cavity),
-            _ => Ok(Enclosure::Open),
-        }
-    }
-}
-
-/// Unit vectors around `axis`, tilted by [`TILTS`].
-fn tilted(axis: Vector) -> impl Iterator<Item = Vector> {
-    let first = any_perpendicular(axis);
-    TILTS.into_iter().flat_map(move |tilt| {
-        let (sin, cos) = libm::sincosf(tilt);
-        (0..TILT_DIRECTIONS).map(move |k| {
-            let angle = core::f32::consts::TAU * k as f32 / TILT_DIRECTIONS as f32;
-            axis * cos + rotate_about(axis, angle, first) * sin
-        })
+/// The probe below a contact; `None` if there is no room for one, as between two layers of the object.
+fn probe_below<'a>(body: &'a Body<'a>, to_object: &Pose, contact: &Contact) -> Option<Probe<'a>> {
+    BAR_DEPTHS.into_iter().find_map(|depth| {
+        let at = to_object * (contact.position - contact.normal * depth);
+        let has_room = body.field.distance(&at) > MIN_ROOM * depth;
+        has_room.then_some(Probe { body, at, radius: PROBE_RADIUS * depth })
     })
 }
 
@@ -212,7 +162,7 @@ fn is_caught(
         let mut is_held = [false; 2];
         for (is_held, side) in is_held.iter_mut().zip([side, -side]) {
             // When the object moves to one side, the bar meets what the object has on the other.
-            *is_held = is_stopped(body, &probe.at, probe.radius, &(to_object * -side), meter)?
+            *is_held = probe.is_stopped(&(to_object * -side), 0.0, meter)?
                 || is_stopped_by_supporter((body, support), rest, contact, &side, meter)?;
         }
         if is_held == [true; 2] {
