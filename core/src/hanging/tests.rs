@@ -3,7 +3,7 @@
 use super::sites::Cost;
 use super::*;
 use crate::geometry::{Cloud, Point, Pose, Vector};
-use crate::mechanics::Fate;
+use crate::mechanics::{Fate, Kind};
 use crate::memory::{Limits, OutOfMemory};
 use crate::test_shapes::{self, Shape};
 use crate::{Candidates, CentreOfMass, Monitor, Params, Stop};
@@ -425,11 +425,12 @@ impl Scene {
 fn assert_hangs(poses: &[HangingPose], scene: &Scene, params: &Params) {
     assert!(!poses.is_empty());
     scene.analyse(params, &Monitor::new(), |object, supporter| {
-        let mut last = 1.0;
+        let mut last = Kind::ALL.map(|kind| (kind, 1.0));
         for pose in poses {
             let rest = pose.rest.unwrap();
-            assert!((params.min_probability..=last).contains(&rest.probability), "{}", rest.probability);
-            last = rest.probability;
+            let (_, last) = last.iter_mut().find(|(kind, _)| *kind == rest.kind).unwrap();
+            assert!((params.min_probability..=*last).contains(&rest.probability), "{}", rest.probability);
+            *last = rest.probability;
             let inverse = pose.pose.inverse();
             let distance = |p: &Point| object.surface().signed_distance(&(inverse * p));
             let least = supporter.points().points().iter().map(distance).fold(f32::INFINITY, f32::min);

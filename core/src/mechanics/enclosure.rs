@@ -32,8 +32,11 @@ const COLUMNS: usize = 2 * ROWS;
 const END_ROWS: usize = ROWS / 3;
 /// Growth of the ball with its distance, no unit: half of a row, so that no material passes between two directions.
 const GROWTH: f32 = 0.044;
-/// Free ways that lead to an end at least, of [`ROWS`] times [`COLUMNS`]. Fewer are a hole through which no bar passes.
+/// Free ways that lead to an end at least, of [`END_ROWS`] times [`COLUMNS`]. Fewer are a hole through which no bar passes.
 const MIN_WAYS: usize = 16;
+/// Largest distance between the material of two neighbouring directions, in radii of the ball there: twice as wide is a gap
+/// through which it passes.
+const MAX_GAP: f32 = 1.5;
 /// Most steps of a way.
 const MAX_STEPS: usize = 200;
 
@@ -49,34 +52,48 @@ const MAX_HOLES: usize = 2;
 const MAX_RISE: f32 = -0.25;
 
 impl Probe<'_> {
-    /// How the object surrounds the ball on a bar along the unit vector `bar`.
-    pub(super) fn enclosure(&self, bar: &Vector, up: &Vector, meter: &mut Meter) -> Result<Enclosure, Stop> {
-        if Directions::around(bar).ends(self, meter)? == Ends::Parted {
+    /// How the object surrounds the ball on a bar along the unit vector `bar`. `contact` points from the ball to the contact.
+    pub(super) fn enclosure(
+        &self,
+        (bar, contact, up): (&Vector, &Vector, &Vector),
+        meter: &mut Meter,
+    ) -> Result<Enclosure, Stop> {
+        let mut around = Surroundings::new(self, bar);
+        if around.runs_around(contact, meter)? && around.has_open_ends(meter)? {
             return Ok(Enclosure::Loop);
         }
         Ok(if self.is_in_cavity(up, meter)? { Enclosure::Cavity } else { Enclosure::Open })
     }
 
-    /// Whether the object stops the ball on a straight way. The ball grows on it by `growth` metres a metre.
-    pub(super) fn is_stopped(&self, way: &Vector, growth: f32, meter: &mut Meter) -> Result<bool, Stop> {
+    /// Whether the object stops the ball on a straight way.
+    pub(super) fn is_stopped(&self, way: &Vector, meter: &mut Meter) -> Result<bool, Stop> {
+        Ok(self.travel(way, 0.0, meter)?.is_some())
+    }
+
+    /// How far the ball gets on a straight way until the object stops it, metres; `None` if nothing does. The ball grows on it
+    /// by `growth` metres a metre.
+    fn travel(&self, way: &Vector, growth: f32, meter: &mut Meter) -> Result<Option<f32>, Stop> {
         let mut travelled = 0.0;
         for step in 0..MAX_STEPS {
             let point = self.at + way * travelled;
             let radius = self.radius.max(growth * travelled);
             if self.body.is_beyond(&point, radius) {
                 meter.distance_queries(step)?;
-                return Ok(false);
+                return Ok(None);
             }
-            let gap = self.body.field.distance(&point) - radius;
+            let distance = self.body.field.distance(&point);
             // At the start the ball is known to be clear. Far from the surface the field is only a lower bound.
-            if gap < 0.0 && step > 0 && (gap + radius < 0.0 || self.body.surface.is_within(&point, radius)) {
+            let is_stopped = step > 0
+                && distance < radius
+                && (distance < 0.0 || self.body.surface.is_within(&point, radius));
+            if is_stopped {
                 meter.distance_queries(step)?;
-                return Ok(true);
+                return Ok(Some(travelled));
             }
-            travelled += gap.max(0.5 * self.radius);
+            travelled += (distance - radius).max(0.5 * self.radius);
         }
         meter.distance_queries(MAX_STEPS)?;
-        Ok(true)
+        Ok(Some(travelled))
     }
 
     /// Whether the ball is in a cavity with one opening, which faces down.
@@ -84,7 +101,7 @@ impl Probe<'_> {
         let mut ways = heapless::Vec::<Vector, SPHERE_WAYS>::new();
         for k in 0..SPHERE_WAYS {
             let way = fibonacci_direction(k, SPHERE_WAYS);
-            if !self.is_stopped(&way, 0.0, meter)? {
+            if !self.is_stopped(&way, meter)? {
                 let _ = ways.push(way);
                 if ways.len() as f32 > MAX_OPENING * SPHERE_WAYS as f32 {
                     return Ok(false);
@@ -97,135 +114,134 @@ impl Probe<'_> {
     }
 }
 
-/// The directions around a bar, which is the polar axis.
-struct Directions {
+/// The material around a bar, seen from the ball: where the object stops it, in a grid of directions with the bar as polar axis.
+struct Surroundings<'a> {
+    probe: &'a Probe<'a>,
     bar: Vector,
     across: [Vector; 2],
-    states: [State; ROWS * COLUMNS],
-    /// Whether free ways join the two ends of the bar.
-    are_joined: bool,
+    /// For each direction, how far the ball gets, in [`TENTHS`]; [`NOT_LOOKED`], or [`FREE`].
+    travels: [u16; ROWS * COLUMNS],
+    /// For each direction in which the material is connected to the contact, how often it runs around the bar from there;
+    /// [`NOT_CONNECTED`] elsewhere.
+    turns: [i8; ROWS * COLUMNS],
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum State {
-    Unknown,
-    /// The way is free.
-    Free,
-    /// The way is free, and free ones join it with the first end of the bar.
-    First,
-    /// The way is free, and free ones join it with the second end of the bar.
-    Second,
-    /// The object stops the ball.
-    Stopped,
-}
+/// Units of a travel, metres.
+const TENTHS: f32 = 1e-4;
+/// Largest travel, in [`TENTHS`].
+const FARTHEST: u16 = u16::MAX - 2;
+const FREE: u16 = u16::MAX - 1;
+const NOT_LOOKED: u16 = u16::MAX;
+const NOT_CONNECTED: i8 = i8::MAX;
 
-/// What leads towards the ends of a bar.
-#[derive(Clone, Copy, PartialEq)]
-enum Ends {
-    /// Nothing leads towards one of them.
-    Closed,
-    /// Free ways lead towards both, and join them around the object's material.
-    Joined,
-    /// Free ways lead towards both, and material is all around between them.
-    Parted,
-}
-
-impl Directions {
-    fn around(bar: &Vector) -> Self {
+impl<'a> Surroundings<'a> {
+    fn new(probe: &'a Probe<'a>, bar: &Vector) -> Self {
         let first = any_perpendicular(*bar);
-        let across = [first, bar.cross(&first)];
-        Self { bar: *bar, across, states: [State::Unknown; ROWS * COLUMNS], are_joined: false }
+        Self {
+            probe,
+            bar: *bar,
+            across: [first, bar.cross(&first)],
+            travels: [NOT_LOOKED; ROWS * COLUMNS],
+            turns: [NOT_CONNECTED; ROWS * COLUMNS],
+        }
     }
 
     /// The unit vector in the middle of a cell.
-    fn way(&self, row: usize, column: usize) -> Vector {
+    fn way(&self, cell: usize) -> Vector {
         let angle = |index: usize, count: usize, whole: f32| whole * (index as f32 + 0.5) / count as f32;
-        let (sin, cos) = libm::sincosf(angle(row, ROWS, core::f32::consts::PI));
-        let (aside, ahead) = libm::sincosf(angle(column, COLUMNS, core::f32::consts::TAU));
+        let (sin, cos) = libm::sincosf(angle(cell / COLUMNS, ROWS, core::f32::consts::PI));
+        let (aside, ahead) = libm::sincosf(angle(cell % COLUMNS, COLUMNS, core::f32::consts::TAU));
         self.bar * cos + (self.across[0] * ahead + self.across[1] * aside) * sin
     }
 
-    /// What leads towards the ends of the bar.
-    fn ends(&mut self, probe: &Probe, meter: &mut Meter) -> Result<Ends, Stop> {
-        let (count, rows) = (ROWS * COLUMNS, END_ROWS * COLUMNS);
-        if !self.join_nearest(0..rows, State::First, probe, meter)? {
-            return Ok(Ends::Closed);
-        }
-        // What is joined with the first end may lead towards the second one as well.
-        let is_second = self.join_nearest((count - rows..count).rev(), State::Second, probe, meter)?;
-        Ok(match (is_second, self.are_joined) {
-            (_, true) => Ends::Joined,
-            (true, false) => Ends::Parted,
-            (false, false) => Ends::Closed,
-        })
+    /// The cell of a direction of any length.
+    fn cell(&self, way: &Vector) -> usize {
+        let [x, y] = self.across.map(|axis| axis.dot(way));
+        let polar = libm::atan2f(libm::sqrtf(x * x + y * y), self.bar.dot(way)) / core::f32::consts::PI;
+        let around = libm::atan2f(y, x) / core::f32::consts::TAU;
+        let row = ((polar * ROWS as f32) as usize).min(ROWS - 1);
+        let column = (((around + 1.0) * COLUMNS as f32) as usize) % COLUMNS;
+        row * COLUMNS + column
     }
 
-    /// Joins free ways from the first of some cells that is free, passing over holes. Returns whether there is one.
-    fn join_nearest(
-        &mut self,
-        cells: impl Iterator<Item = usize>,
-        end: State,
-        probe: &Probe,
-        meter: &mut Meter,
-    ) -> Result<bool, Stop> {
-        for index in cells {
-            match self.look(index, probe, meter)? {
-                State::Free => {
-                    self.states[index] = end;
-                    if self.spread(end, probe, meter)? >= MIN_WAYS {
-                        return Ok(true);
-                    }
-                    self.states
-                        .iter_mut()
-                        .filter(|state| **state == end)
-                        .for_each(|state| *state = State::Stopped);
+    /// How far the ball gets in the direction of a cell, looked up once.
+    fn travel(&mut self, cell: usize, meter: &mut Meter) -> Result<u16, Stop> {
+        if self.travels[cell] == NOT_LOOKED {
+            let travel = self.probe.travel(&self.way(cell), GROWTH, meter)?;
+            let tenths = |metres: f32| ((metres / TENTHS) as u16).min(FARTHEST);
+            self.travels[cell] = travel.map_or(FREE, tenths);
+        }
+        Ok(self.travels[cell])
+    }
+
+    /// Whether ways lead out towards both ends of the bar.
+    fn has_open_ends(&mut self, meter: &mut Meter) -> Result<bool, Stop> {
+        for first in [0, ROWS - END_ROWS] {
+            let mut free = 0;
+            for cell in first * COLUMNS..(first + END_ROWS) * COLUMNS {
+                free += usize::from(self.travel(cell, meter)? == FREE);
+                if free == MIN_WAYS {
+                    break;
                 }
-                State::First => {
-                    self.are_joined = true;
-                    return Ok(false);
+            }
+            if free < MIN_WAYS {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Whether the material that is connected to that in the direction `contact` runs once around the bar.
+    fn runs_around(&mut self, contact: &Vector, meter: &mut Meter) -> Result<bool, Stop> {
+        let mut waiting = heapless::Vec::<u16, { ROWS * COLUMNS }>::new();
+        let start = self.cell(contact);
+        if self.travel(start, meter)? == FREE {
+            return Ok(false);
+        }
+        self.turns[start] = 0;
+        let _ = waiting.push(start as u16);
+        while let Some(cell) = waiting.pop() {
+            let cell = usize::from(cell);
+            let (row, column) = (cell / COLUMNS, cell % COLUMNS);
+            for (down, right) in NEIGHBOURS {
+                let (row, unwrapped) = (row as i32 + down, column as i32 + right);
+                if !(0..ROWS as i32).contains(&row) {
+                    continue;
                 }
-                _ => {}
+                let next = row as usize * COLUMNS + unwrapped.rem_euclid(COLUMNS as i32) as usize;
+                let turns = self.turns[cell] + unwrapped.div_euclid(COLUMNS as i32) as i8;
+                if self.turns[next] == turns || !self.are_connected(cell, next, meter)? {
+                    continue;
+                }
+                if self.turns[next] != NOT_CONNECTED {
+                    return Ok(true);
+                }
+                self.turns[next] = turns;
+                // Each cell is pushed once, so that there is room.
+                let _ = waiting.push(next as u16);
             }
         }
         Ok(false)
     }
 
-    /// Looks whether the way of a cell is free, once.
-    fn look(&mut self, index: usize, probe: &Probe, meter: &mut Meter) -> Result<State, Stop> {
-        if self.states[index] == State::Unknown {
-            let way = self.way(index / COLUMNS, index % COLUMNS);
-            let is_stopped = probe.is_stopped(&way, GROWTH, meter)?;
-            self.states[index] = if is_stopped { State::Stopped } else { State::Free };
+    /// Whether the material in the directions of two neighbouring cells is connected, with no gap through which the bar passes.
+    fn are_connected(&mut self, a: usize, b: usize, meter: &mut Meter) -> Result<bool, Stop> {
+        let travels = [self.travel(a, meter)?, self.travel(b, meter)?];
+        if travels.contains(&FREE) {
+            return Ok(false);
         }
-        Ok(self.states[index])
-    }
-
-    /// Joins free ways next to those of an end, in sweeps of alternating order, until there are no more. Returns their number.
-    fn spread(&mut self, end: State, probe: &Probe, meter: &mut Meter) -> Result<usize, Stop> {
-        let (mut count, mut is_backwards) = (1, false);
-        loop {
-            let before = count;
-            for k in 0..ROWS * COLUMNS {
-                let index = if is_backwards { ROWS * COLUMNS - 1 - k } else { k };
-                let is_open = matches!(self.states[index], State::Unknown | State::Free);
-                if is_open && self.is_next_to(end, index) && self.look(index, probe, meter)? == State::Free {
-                    self.states[index] = end;
-                    count += 1;
-                }
-            }
-            if count == before {
-                return Ok(count);
-            }
-            is_backwards = !is_backwards;
-        }
-    }
-
-    fn is_next_to(&self, end: State, index: usize) -> bool {
-        let (row, column) = (index / COLUMNS, index % COLUMNS);
-        let is_there = |row: usize, column: usize| self.states[row * COLUMNS + column] == end;
-        is_there(row, (column + 1) % COLUMNS)
-            || is_there(row, (column + COLUMNS - 1) % COLUMNS)
-            || row > 0 && is_there(row - 1, column)
-            || row + 1 < ROWS && is_there(row + 1, column)
+        let [near, far] = travels.map(|travel| f32::from(travel) * TENTHS);
+        let [from, to] = [(a, near), (b, far)].map(|(cell, travel)| self.probe.at + self.way(cell) * travel);
+        let radius = self.probe.radius.max(GROWTH * near.max(far));
+        let steps = libm::ceilf((to - from).norm() / radius) as usize;
+        meter.distance_queries(steps)?;
+        let is_filled = |step: usize| {
+            let point = from + (to - from) * (step as f32 / steps as f32);
+            self.probe.body.field.distance(&point) < MAX_GAP * radius
+        };
+        Ok((1..steps).all(is_filled))
     }
 }
+
+/// The rows down and columns to the right of the neighbours of a cell.
+const NEIGHBOURS: [(i32, i32); 8] = [(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1)];

@@ -100,7 +100,8 @@ pub(crate) fn kind_of(
         }
         let Some(probe) = probe_below(body, &to_object, contact) else { continue };
         let bar = bar_direction(support, contact);
-        match probe.enclosure(&(to_object * bar), &(to_object * up), meter)? {
+        let towards = to_object * contact.normal;
+        match probe.enclosure((&(to_object * bar), &towards, &(to_object * up)), meter)? {
             Enclosure::Loop => return Ok(Kind::Threaded),
             Enclosure::Cavity => kind = Kind::Capped,
             Enclosure::Open => {
@@ -162,7 +163,7 @@ fn is_caught(
         let mut is_held = [false; 2];
         for (is_held, side) in is_held.iter_mut().zip([side, -side]) {
             // When the object moves to one side, the bar meets what the object has on the other.
-            *is_held = probe.is_stopped(&(to_object * -side), 0.0, meter)?
+            *is_held = probe.is_stopped(&(to_object * -side), meter)?
                 || is_stopped_by_supporter((body, support), rest, contact, &side, meter)?;
         }
         if is_held == [true; 2] {

@@ -93,14 +93,17 @@ impl<'a> CandidateSearch<'a> {
         }
         let ways = arena.slice::<Way>(2 * contacts.len())?;
         for (k, way) in ways.iter_mut().enumerate() {
-            let ObjectContact { capture, passage, position, .. } = contacts[k / 2];
-            if !by.contains(&position) {
+            let contact = &contacts[k / 2];
+            if !by.contains(&contact.position) {
                 way.score = f32::NEG_INFINITY;
                 continue;
             }
-            way.score = libm::logf(capture.max(MIN_CAPTURE) / MIN_CAPTURE)
+            let lever = (contact.position - scene.0.centre).norm() / scene.0.reach;
+            way.score = libm::logf(contact.capture.clamp(MIN_CAPTURE, MAX_CAPTURE) / MIN_CAPTURE)
+                + LEVER_BONUS * lever
                 + if is_along(k) { ALONG_BONUS } else { 0.0 }
-                - if passage < BAR_LENGTH { ENCLOSED_PENALTY } else { 0.0 };
+                + if is_along(k) && contact.is_in_loop() { LOOP_BONUS } else { 0.0 }
+                - if contact.is_enclosed() { ENCLOSED_PENALTY } else { 0.0 };
         }
         Ok(Self { scene, up, contacts, places, ways, counts: CandidateCounts::default() })
     }
@@ -157,14 +160,16 @@ impl<'a> CandidateSearch<'a> {
                 return Ok(());
             }
         }
-        self.ways[index].score -= NO_ROOM_DISCOUNT;
+        // A loop that is too narrow for the bars loses its bonus before all places are tried.
+        let is_in_loop = is_along(index) && self.contacts[index / 2].is_in_loop();
+        self.ways[index].score -= if is_in_loop { NARROW_LOOP_DISCOUNT } else { NO_ROOM_DISCOUNT };
         Ok(())
     }
 
     /// Drops the contacts inside cavities, which only caps hang by.
     pub(super) fn drop_enclosed(&mut self) {
         for (way, contact) in self.ways.chunks_mut(2).zip(self.contacts) {
-            if contact.passage < BAR_LENGTH {
+            if contact.is_enclosed() {
                 way.iter_mut().for_each(|way| way.score = f32::NEG_INFINITY);
             }
         }

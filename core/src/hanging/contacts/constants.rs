@@ -43,12 +43,15 @@ pub(super) const MAX_PENETRATION: f32 = 0.003;
 pub(super) const MAX_PUSH: f32 = 0.004;
 /// Capture depth below which all contacts score the same, metres: half the least of `CAPTURE_DEPTHS`.
 pub(super) const MIN_CAPTURE: f32 = 0.00075;
+/// Capture depth above which all contacts score the same, metres: a bar that is caught by so much does not slip out.
+pub(super) const MAX_CAPTURE: f32 = 0.012;
 
 // Budget: how much is tried, and in which order. Scores are natural logarithms of the capture depth over `MIN_CAPTURE`.
 
 /// Contacts kept of an object. Larger: more time; the deepest captures are tried first either way.
 pub(super) const MAX_OBJECT_CONTACTS: usize = 192;
-/// Least distance between contacts of an object with similar normals, as a fraction of the bounding box's diagonal.
+/// Least distance between contacts of an object with similar normals, as a fraction of the bounding box's diagonal, if there
+/// are not too many.
 pub(super) const OBJECT_SPACING: f32 = 0.02;
 /// Cosine above which two normals count as similar for that.
 pub(super) const SIMILAR_NORMALS: f32 = 0.7;
@@ -58,10 +61,20 @@ pub(super) const BAR_DIRECTIONS: usize = 6;
 pub(super) const MAX_SUPPORT_CONTACTS: usize = 96;
 /// Least distance between contacts of a supporter, metres.
 pub(super) const SUPPORT_SPACING: f32 = 0.012;
-/// Factor on that distance each time more than `MAX_SUPPORT_CONTACTS` were found.
+/// Factor on either distance each time more contacts were found than are kept.
 pub(super) const SPACING_GROWTH: f32 = 1.4;
 /// Score added for laying the object's best bar direction along the supporter's bar, instead of across it.
 pub(super) const ALONG_BONUS: f32 = 1.0;
+/// Score added for a contact in a loop, with its bar direction along the supporter's bar: people hang things by their holes.
+pub(super) const LOOP_BONUS: f32 = 1.0;
+/// Score added for a contact as far from the centre of mass as the object reaches; less in proportion. People hang things by
+/// their ends, and what hangs from there swings back the most firmly.
+pub(super) const LEVER_BONUS: f32 = 4.0;
+/// Score taken off a contact in a loop after `PATIENCE` places without room: a loop that is too narrow for the bars loses its
+/// bonus before all places are tried.
+pub(super) const NARROW_LOOP_DISCOUNT: f32 = LOOP_BONUS / 8.0;
+/// Rays around a bar that tell whether a contact is in a loop.
+pub(super) const ENCIRCLING_RAYS: usize = 12;
 /// Score taken off an enclosed contact: see `BAR_LENGTH`.
 pub(super) const ENCLOSED_PENALTY: f32 = 2.0;
 /// Score taken off a contact of the object after each release from it.

@@ -26,6 +26,20 @@ pub struct ObjectContact {
     /// Free length for such a bar along its direction, towards the freer side, metres; infinite where nothing stops it,
     /// as in a hole.
     pub passage: f32,
+    /// 1 if the object is all around such a bar, as around a hole, else 0.
+    pub encircled: u32,
+}
+
+impl ObjectContact {
+    /// Whether the contact is in a loop, through which a bar of useful length passes.
+    pub(super) fn is_in_loop(&self) -> bool {
+        self.encircled > 0 && !self.is_enclosed()
+    }
+
+    /// Whether only a short bar reaches the contact, as inside a cup.
+    pub(super) fn is_enclosed(&self) -> bool {
+        self.passage < BAR_LENGTH
+    }
 }
 
 /// The search on one object.
@@ -41,25 +55,19 @@ impl Search<'_> {
         slots: &mut [ObjectContact],
         meter: &mut Meter,
     ) -> (ObjectCounts, Option<Stop>) {
-        let ObjectSamples { surface, points, normals, centre_of_mass, .. } = *self.samples;
-        let apart = OBJECT_SPACING * surface.aabb().diagonal();
-        let (mut counts, mut stop) = (ObjectCounts::default(), None);
-        for (point, normal) in points.iter().zip(normals) {
-            let to_centre = centre_of_mass - point;
-            if to_centre.dot(normal) < MIN_OBJECT_COSINE * to_centre.norm() {
-                continue;
+        let mut counts =
+            ObjectCounts { contact_points: self.facing_the_centre().count(), ..ObjectCounts::default() };
+        let mut apart = OBJECT_SPACING * self.samples.surface.aabb().diagonal();
+        let found = loop {
+            match self.spread(apart, slots) {
+                Some(count) => break count,
+                None => apart *= SPACING_GROWTH,
             }
-            counts.contact_points += 1;
-            let count = counts.contacts;
-            let is_known = |other: &ObjectContact| {
-                (other.position - point).norm_squared() < apart * apart
-                    && other.normal.dot(normal) > SIMILAR_NORMALS
-            };
-            if count == slots.len() || slots[..count].iter().any(is_known) {
-                continue;
-            }
-            match self.examine(*point, *normal, meter) {
-                Ok(contact) => slots[count] = contact,
+        };
+        let mut stop = None;
+        for slot in &mut slots[..found] {
+            match self.examine(slot.position, slot.normal, meter) {
+                Ok(contact) => *slot = contact,
                 Err(reason) => {
                     stop = Some(reason);
                     break;
@@ -77,6 +85,34 @@ impl Search<'_> {
             b.capture.total_cmp(&a.capture).then(a.room.total_cmp(&b.room)).then_with(by_place)
         });
         (counts, stop)
+    }
+
+    /// Samples whose normal leans towards the centre of mass, with their normals.
+    fn facing_the_centre(&self) -> impl Iterator<Item = (&Point, &Vector)> {
+        let ObjectSamples { points, normals, centre_of_mass, .. } = *self.samples;
+        points.iter().zip(normals).filter(move |(point, normal)| {
+            let to_centre = centre_of_mass - *point;
+            to_centre.dot(normal) >= MIN_OBJECT_COSINE * to_centre.norm()
+        })
+    }
+
+    /// Fills `slots` with samples at least this far apart or with other normals, and returns their number; `None` if there are
+    /// more than `slots`.
+    fn spread(&self, apart: f32, slots: &mut [ObjectContact]) -> Option<usize> {
+        let mut count = 0;
+        for (point, normal) in self.facing_the_centre() {
+            let is_known = |other: &ObjectContact| {
+                (other.position - point).norm_squared() < apart * apart
+                    && other.normal.dot(normal) > SIMILAR_NORMALS
+            };
+            if slots[..count].iter().any(is_known) {
+                continue;
+            }
+            let slot = slots.get_mut(count)?;
+            *slot = ObjectContact { position: *point, normal: *normal, ..ObjectContact::zeroed() };
+            count += 1;
+        }
+        Some(count)
     }
 
     fn examine(&self, point: Point, normal: Vector, meter: &mut Meter) -> Result<ObjectContact, Stop> {
@@ -107,6 +143,12 @@ impl Search<'_> {
         meter.rays(2)?;
         let ways = [bar_direction, -bar_direction].map(|way| self.samples.surface.closest_hit(&from, &way));
         let passage = ways.iter().map(|hit| hit.unwrap_or(f32::INFINITY)).fold(0.0, f32::max);
-        Ok(ObjectContact { position: point, normal, bar_direction, capture, room, passage })
+        let is_hit = |k: usize| {
+            let angle = core::f32::consts::TAU * k as f32 / ENCIRCLING_RAYS as f32;
+            self.samples.surface.any_hit(&from, &rotate_about(bar_direction, angle, down))
+        };
+        meter.rays(ENCIRCLING_RAYS)?;
+        let encircled = u32::from(capture > 0.0 && (0..ENCIRCLING_RAYS).all(is_hit));
+        Ok(ObjectContact { position: point, normal, bar_direction, capture, room, passage, encircled })
     }
 }

@@ -11,6 +11,7 @@ use crate::hanging::found::Found;
 use crate::hanging::pose::HangingPose;
 use crate::hanging::scene::Scene;
 use crate::hanging::settling::Settling;
+use crate::mechanics::Kind;
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop};
 
@@ -44,9 +45,10 @@ pub(in crate::hanging) fn search(
             }
         }
     };
-    let is_there =
-        !places.is_empty() && contacts.iter().any(|contact| request.by.contains(&contact.position));
-    settling.counts.outside += usize::from(!is_there);
+    let is_on = !request.on.is_limited() || !places.is_empty();
+    let is_by =
+        !request.by.is_limited() || contacts.iter().any(|contact| request.by.contains(&contact.position));
+    settling.counts.outside += usize::from(!is_on || !is_by);
     let mut candidates = CandidateSearch::new(bodies, contacts, &request.by, places, up, &mut arena)?;
     let mut best = Best::new(poses);
     let searched = match scene.params.settle {
@@ -87,12 +89,14 @@ fn release(
         let pose = HangingPose { pose: candidate.pose, ..HangingPose::default() };
         let stays = settling.release(&pose, poses, meter)?;
         candidates.discount(&candidate, if stays { REST_SHARE } else { 1.0 });
-        let has_enough = settling.counts.firm_as_preferred >= firm_enough;
-        if settling.has_enough_of_others() {
-            candidates.drop_enclosed();
-        }
-        if has_enough || settling.counts.probable > 0 && ATTEMPT_DIVISOR * (attempt + 1) >= attempts {
+        let counts = &settling.counts;
+        let is_spent = |divisor: usize| counts.probable > 0 && divisor * (attempt + 1) >= attempts;
+        if counts.firm_as_preferred >= firm_enough || is_spent(ATTEMPT_DIVISOR) {
             break;
+        }
+        // Caps alone are no reason to stop, but to look elsewhere.
+        if settling.has_enough_of_others() && !settling.request.prefer.contains(Kind::Capped) {
+            candidates.drop_enclosed();
         }
     }
     Ok(())

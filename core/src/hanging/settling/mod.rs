@@ -80,6 +80,9 @@ const MIN_RELEASE_GAP: f32 = 0.0001;
 /// it is another place than the one that was chosen.
 const MAX_RELEASE_SINKING: f32 = 0.01;
 
+/// Share of the merit of a pose that a centre of mass close to the contacts takes away. Things are made to hang by their ends; of
+/// poses that hold equally well, the one with the longer lever is what people mean.
+const LEVER_SHARE: f32 = 0.1;
 /// Distance below which two rest poses are the same: a robot's accuracy.
 const SAME: Distance = Distance { position: 0.005, rotation: 0.1 };
 
@@ -228,9 +231,12 @@ impl<'a> Settling<'a> {
         poses.offer(pose, is_better);
     }
 
-    /// What a pose is ranked by: its probability, and how much its kind is wanted.
+    /// What a pose is ranked by: its probability, how much its kind is wanted, and how far from the contacts the centre of mass
+    /// hangs.
     fn merit(&self, pose: &HangingPose) -> f32 {
-        pose.rest.map_or(0.0, |rest| rest.probability * self.request.weight(rest.kind))
+        let Some(rest) = &pose.rest else { return 0.0 };
+        let lever = rest.lever(&self.body.centre) / self.body.reach;
+        rest.probability * self.request.weight(rest.kind) * (1.0 - LEVER_SHARE * (1.0 - lever))
     }
 
     fn count_firm(&mut self, rest: &Rest) {
