@@ -8,17 +8,21 @@ use super::{Overlap, Scene};
 use crate::solid::Solid;
 use hangpose::mechanics::Kind;
 use hangpose::sample_supporter;
-use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, Vector3};
+use nalgebra::{Isometry3, Point3, Translation3, Vector3};
 use parry3d::query::{PointQuery, Ray, RayCast};
 use parry3d::shape::TriMesh;
-use std::f64::consts::TAU;
+use std::f64::consts::PI;
 
 /// Largest displacement that separates the shapes before the object is moved, m.
 const APART: f64 = 0.004;
 /// Length of a step, m: less than two thin wires together.
 const STEP: f64 = 0.002;
-/// Number of level directions.
-const DIRECTIONS: usize = 16;
+/// Number of level lines, in both directions of which the object is moved.
+const LINES: usize = 8;
+/// Number of rays from a point.
+const RAYS: usize = 100;
+/// Largest angle between their mean and the rays that leave a cavity, rad.
+const NARROW: f64 = 1.3;
 /// Share of the object's largest extent within which something stops an object that is caught.
 const CAUGHT: f64 = 0.5;
 /// Number of samples of the supporter's surface.
@@ -30,56 +34,45 @@ const CARRYING: f32 = 0.2;
 /// Distance between places at which the supporter carries the object, m.
 const PLACES_APART: f64 = 0.015;
 /// Radius of the piece of the supporter that is the bar at a place, m.
-const PIECE: f64 = 0.025;
-/// Shares of the height at which a bar stops the object from below at which level ways across the bar are tried.
+const PIECE: f64 = 0.02;
+/// Shares of the height at which a piece stops the object on its way up at which level ways are tried.
 const HEIGHTS: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
-/// Angles of these ways to the perpendicular of the bar, rad.
-const ASKEW: [f64; 3] = [0.0, -0.25, 0.25];
 
 /// How the object hangs at `rest`; `None` if 4 mm do not separate the shapes there.
 ///
+/// - Capped: a point of the supporter is in a cavity of the object: the rays from it that do not meet the object are all
+///   within 75 degrees of one direction.
 /// - Threaded: at some place where the supporter carries the object, the piece of the supporter around it alone stops the
-///   object on its way up, and at no height below that can the object leave sideways across the piece.
-/// - Capped: the object is free upwards and stopped in all level directions, and a point of the supporter is in a cavity
-///   of the object: level rays in all directions and the ray upwards meet the object.
-/// - Hooked: it is stopped in two opposite level directions.
+///   object on its way up, and there is a level line along which the piece stops it in both directions at every height up
+///   to there. A hook leaves sideways at some height.
+/// - Hooked: the object is stopped in two opposite level directions within half of its largest extent.
 /// - Balanced: anything else.
-///
-/// A vessel that lies with its hollow over a level bar counts as threaded, and an object that lies between two walls as
-/// hooked.
 pub fn freedom(scene: &Scene, rest: &Isometry3<f64>) -> Option<Kind> {
     let whole = Overlap::new(scene);
     let (low, high) = bounds(&scene.object.vertices);
     let extent = (high - low).max();
     let start = whole.separated(rest, APART)?;
     let object = Surface::new(scene.object);
-    if places(scene, &object, rest).iter().any(|place| is_linked(scene, &start, place, extent)) {
-        return Some(Kind::Threaded);
-    }
-    let caught: Vec<bool> =
-        level_ways().iter().map(|way| stopped(&whole, &start, way, CAUGHT * extent).is_some()).collect();
-    let is_held = |k: usize| caught[k] && caught[(k + DIRECTIONS / 2) % DIRECTIONS];
-    let is_over_a_tip = || {
-        caught.iter().all(|&caught| caught)
-            && stopped(&whole, &start, &Vector3::z(), extent).is_none()
-            && scene
-                .supporter
-                .vertices
-                .iter()
-                .any(|&vertex| object.encloses(rest, Point3::from(vertex).cast()))
+    let is_caught = |way: &Vector3<f64>| {
+        [*way, -way].iter().all(|way| stopped(&whole, &start, way, CAUGHT * extent).is_some())
     };
-    Some(if is_over_a_tip() {
+    let to_object = rest.inverse();
+    let mut points = scene.supporter.vertices.iter().map(|&vertex| to_object * Point3::from(vertex).cast());
+    Some(if points.any(|point| object.has_in_cavity(&point)) {
         Kind::Capped
-    } else if (0..DIRECTIONS / 2).any(is_held) {
+    } else if pieces(scene, &object, rest).iter().any(|piece| is_linked(scene, &start, piece, extent)) {
+        Kind::Threaded
+    } else if lines().iter().any(is_caught) {
         Kind::Hooked
     } else {
         Kind::Balanced
     })
 }
 
-fn level_ways() -> [Vector3<f64>; DIRECTIONS] {
+/// Level unit vectors along lines in all directions.
+fn lines() -> [Vector3<f64>; LINES] {
     std::array::from_fn(|k| {
-        let (sin, cos) = (TAU * k as f64 / DIRECTIONS as f64).sin_cos();
+        let (sin, cos) = (PI * k as f64 / LINES as f64).sin_cos();
         Vector3::new(cos, sin, 0.0)
     })
 }
@@ -90,31 +83,23 @@ fn stopped(overlap: &Overlap, from: &Isometry3<f64>, way: &Vector3<f64>, most: f
     distances.into_iter().find(|distance| !overlap.is_free(&(Translation3::from(way * *distance) * from)))
 }
 
-/// A place at which the supporter carries the object.
-struct Place {
-    /// The supporter's triangles near it.
-    piece: Solid,
-    /// Level direction across the supporter there.
-    across: Vector3<f64>,
-}
-
-/// The places at which the supporter carries the object at `rest`.
-fn places(scene: &Scene, object: &Surface, rest: &Isometry3<f64>) -> Vec<Place> {
+/// The pieces of the supporter around the places at which it carries the object at `rest`.
+fn pieces(scene: &Scene, object: &Surface, rest: &Isometry3<f64>) -> Vec<Solid> {
     let samples = sample_supporter(&scene.supporter.mesh(), SAMPLES, 1);
-    let points: Vec<Point3<f64>> = samples.points.iter().map(|&point| Point3::from(point).cast()).collect();
-    let normals = samples.normals.unwrap_or_default();
-    let mut at: Vec<Point3<f64>> = Vec::new();
+    let mut places: Vec<Point3<f64>> = Vec::new();
     let to_object = rest.inverse();
-    for (point, normal) in points.iter().zip(&normals) {
-        let carries = normal[2] > CARRYING || scene.supporter.is_shell && normal[2] < -CARRYING;
-        if carries
-            && at.iter().all(|other| (other - point).norm() > PLACES_APART)
+    for (&point, normal) in samples.points.iter().zip(samples.normals.iter().flatten()) {
+        let point = Point3::from(point).cast();
+        // The two sides of a surface that is not closed are alike.
+        let rises = if scene.supporter.is_closed() { normal[2] } else { normal[2].abs() };
+        if rises > CARRYING
+            && places.iter().all(|other| (other - point).norm() > PLACES_APART)
             && object.distance(&(to_object * point)) < TOUCHING
         {
-            at.push(*point);
+            places.push(point);
         }
     }
-    at.iter().map(|at| Place { piece: piece(scene.supporter, at), across: across(&points, at) }).collect()
+    places.iter().map(|place| piece(scene.supporter, place)).collect()
 }
 
 /// The triangles of a shape that reach into the ball of radius [`PIECE`] around a point.
@@ -130,25 +115,14 @@ fn piece(solid: &Solid, at: &Point3<f64>) -> Solid {
     Solid { triangles, vertices: solid.vertices.clone(), ..Solid::default() }
 }
 
-/// The level direction across the points around `at`: perpendicular to the direction in which they extend most.
-fn across(points: &[Point3<f64>], at: &Point3<f64>) -> Vector3<f64> {
-    let near = || points.iter().filter(|point| (*point - at).norm() < PIECE);
-    let mean = near().map(|point| point.coords).sum::<Vector3<f64>>() / near().count() as f64;
-    let spread: Matrix3<f64> = near().map(|point| point.coords - mean).map(|v| v * v.transpose()).sum();
-    let eigen = spread.symmetric_eigen();
-    let along = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned();
-    along.cross(&Vector3::z()).try_normalize(1e-3).unwrap_or_else(Vector3::x)
-}
-
-/// Whether the piece of the supporter at a place alone keeps the object from leaving upwards and sideways.
-fn is_linked(scene: &Scene, start: &Isometry3<f64>, place: &Place, extent: f64) -> bool {
-    let overlap = Overlap::new(&Scene { supporter: &place.piece, ..scene.clone() });
+/// Whether a piece of the supporter alone keeps the object from leaving upwards and sideways.
+fn is_linked(scene: &Scene, start: &Isometry3<f64>, piece: &Solid, extent: f64) -> bool {
+    let overlap = Overlap::new(&Scene { supporter: piece, ..scene.clone() });
     let Some(height) = stopped(&overlap, start, &Vector3::z(), extent) else { return false };
-    HEIGHTS.into_iter().all(|share| {
-        let from = Translation3::new(0.0, 0.0, share * (height - STEP)) * start;
-        ASKEW.into_iter().flat_map(|askew| [askew, askew + 0.5 * TAU]).all(|angle| {
-            let way = Rotation3::from_axis_angle(&Vector3::z_axis(), angle) * place.across;
-            stopped(&overlap, &from, &way, extent).is_some()
+    lines().iter().any(|way| {
+        HEIGHTS.into_iter().all(|share| {
+            let from = Translation3::new(0.0, 0.0, share * (height - STEP)) * start;
+            [*way, -way].iter().all(|way| stopped(&overlap, &from, way, extent).is_some())
         })
     })
 }
@@ -167,14 +141,26 @@ impl Surface {
         f64::from(self.0.distance_to_local_point(millimetres(point), false)) / 1000.0
     }
 
-    /// Whether level rays in all directions and the ray upwards from a point of the supporter meet the object at `rest`.
-    fn encloses(&self, rest: &Isometry3<f64>, point: Point3<f64>) -> bool {
-        let to_object = rest.inverse();
-        std::iter::once(Vector3::z()).chain(level_ways()).all(|way| {
-            let way = <[f32; 3]>::from((to_object * way).cast::<f32>()).into();
-            self.0.intersects_local_ray(&Ray::new(millimetres(&(to_object * point)), way), f32::MAX)
-        })
+    /// Whether all rays from a point that do not meet the surface are in about one direction.
+    fn has_in_cavity(&self, point: &Point3<f64>) -> bool {
+        let is_way_out = |way: &Vector3<f64>| {
+            let way = <[f32; 3]>::from(way.cast::<f32>()).into();
+            !self.0.intersects_local_ray(&Ray::new(millimetres(point), way), f32::MAX)
+        };
+        let out: Vec<Vector3<f64>> = sphere().filter(is_way_out).collect();
+        let mean: Vector3<f64> = out.iter().sum();
+        mean.norm() > 0.0 && out.iter().all(|way| way.angle(&mean) < NARROW)
     }
+}
+
+/// Unit vectors spread evenly over the sphere on a Fibonacci lattice.
+fn sphere() -> impl Iterator<Item = Vector3<f64>> {
+    (0..RAYS).map(|k| {
+        let z = 1.0 - (2.0 * k as f64 + 1.0) / RAYS as f64;
+        let (sin, cos) = (PI * (3.0 - 5.0_f64.sqrt()) * k as f64).sin_cos();
+        let across = (1.0 - z * z).sqrt();
+        Vector3::new(across * cos, across * sin, z)
+    })
 }
 
 fn millimetres(point: &Point3<f64>) -> parry3d::math::Vector {
