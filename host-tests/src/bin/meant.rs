@@ -9,7 +9,7 @@ use hangpose::hanging::{HangingPose, Request, Rest};
 use hangpose::mechanics::{Contact, Kind};
 use host_tests::judge::{Bullet, Judge, Scene};
 use host_tests::predicted;
-use host_tests::shapes::Random;
+use host_tests::shapes::{Bar, Joint, Random};
 use host_tests::tables::case::{Case, Fit, made};
 use host_tests::tables::proportion::wilson;
 use host_tests::tables::real::real;
@@ -123,6 +123,8 @@ fn params(case: &Case) -> Params {
 
 /// Largest distance between the main contacts of two poses at the same place, m.
 const SAME_PLACE: f32 = 0.02;
+/// Largest difference in radius and length, m, and tilt, rad, of two bars of the same size.
+const ALIKE: f32 = 1e-4;
 /// Largest coordinate by which a supporter is moved, m.
 const MOVED: f64 = 0.3;
 
@@ -135,7 +137,8 @@ struct Change {
     built: [Option<Kind>; 2],
     /// Distance between the main contacts, m.
     apart: f32,
-    /// Whether an opening of the same kind is joined with the same bar.
+    /// Whether an opening of the same kind is joined with the same bar or with one of the same size, such as another of a
+    /// tree: nothing tells those apart.
     is_same_bar: bool,
 }
 
@@ -220,11 +223,16 @@ fn change(case: &Case) -> Change {
     let apart = (main_contact(&original) - back * main_contact(&turned)).norm();
     let poses = [original.pose, back * turned.pose * object_turn];
     let joints = poses.map(|pose| case.joined(&pose));
+    let size = |joint: Joint| {
+        let Bar { radius, length, tilt, .. } = case.bars[joint.bar];
+        Vector::new(radius, length, tilt)
+    };
+    let alike = |a, b| (size(a) - size(b)).norm() < ALIKE;
     Change {
         kinds,
         built: poses.map(|pose| Some(case.hangs(&pose))),
         apart,
-        is_same_bar: joints[0].is_some() && joints[0] == joints[1],
+        is_same_bar: matches!(joints, [Some(a), Some(b)] if a.kind == b.kind && alike(a, b)),
     }
 }
 

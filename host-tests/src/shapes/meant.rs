@@ -50,8 +50,8 @@ pub struct Joint {
 /// The opening of a made object that is joined with a bar of a made supporter when the object is at `rest`; that of the
 /// kind that people prefer if there are several. `None` if none is: the object is balanced.
 ///
-/// Bars are the centre lines of all round parts of the supporter, including bends and ends that nothing is meant to hang
-/// on. The opening is measured on the mesh by rays from its axis:
+/// Bars are the centre lines of all wires of the supporter, including bends and ends that nothing is meant to hang on. Wall
+/// plates and posts are no bars: an object that hangs on the edge of a plate is not joined. The opening is measured on the mesh by rays from its axis:
 ///
 /// - A hole is joined with a bar whose centre line passes it: seen from the axis, the bar is before the rim of the hole.
 ///   It is as deep as the planes across its axis in which as many rays meet the object as in its middle.
