@@ -1,6 +1,6 @@
 //! How an object hangs, judged by the motions that free it, on the true surfaces.
 //!
-//! The object is moved along straight lines in small steps and stopped where the surfaces overlap. This knows nothing of
+//! The object is moved in small steps, without turning it, and stopped where the surfaces overlap. This knows nothing of
 //! openings and bars and is an approximation.
 
 use super::verdict::bounds;
@@ -8,16 +8,17 @@ use super::{Overlap, Scene};
 use crate::solid::Solid;
 use hangpose::mechanics::Kind;
 use hangpose::sample_supporter;
-use nalgebra::{Isometry3, Point3, Translation3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Point3, Translation3, Vector3};
 use parry3d::query::{PointQuery, Ray, RayCast};
 use parry3d::shape::TriMesh;
+use std::collections::{BinaryHeap, HashSet};
 use std::f64::consts::PI;
 
 /// Largest displacement that separates the shapes before the object is moved, m.
 const APART: f64 = 0.004;
 /// Length of a step, m: less than two thin wires together.
 const STEP: f64 = 0.002;
-/// Number of level lines, in both directions of which the object is moved.
+/// Number of level lines along which the object is moved.
 const LINES: usize = 8;
 /// Number of rays from a point.
 const RAYS: usize = 100;
@@ -30,21 +31,22 @@ const SAMPLES: usize = 30_000;
 /// Distance from the object within which a sample of the supporter touches it, m.
 const TOUCHING: f64 = 0.0015;
 /// Least upward part of the normal of a sample that carries the object.
-const CARRYING: f32 = 0.2;
+const CARRYING: f64 = 0.2;
 /// Distance between places at which the supporter carries the object, m.
 const PLACES_APART: f64 = 0.015;
+/// Distance from a place up to which normals tell most of the direction of the bar, m.
+const NEAR: f64 = 0.005;
+/// Sine of the angle to the vertical below which a bar is upright.
+const UPRIGHT: f64 = 0.2;
 /// Radius of the piece of the supporter that is the bar at a place, m.
 const PIECE: f64 = 0.02;
-/// Shares of the height at which a piece stops the object on its way up at which level ways are tried.
-const HEIGHTS: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
 
 /// How the object hangs at `rest`; `None` if 4 mm do not separate the shapes there.
 ///
 /// - Capped: a point of the supporter is in a cavity of the object: the rays from it that do not meet the object are all
 ///   within 75 degrees of one direction.
-/// - Threaded: at some place where the supporter carries the object, the piece of the supporter around it alone stops the
-///   object on its way up, and there is a level line along which the piece stops it in both directions at every height up
-///   to there. A hook leaves sideways at some height.
+/// - Threaded: at some place where the supporter carries the object, the piece of the supporter around it alone keeps the
+///   object from leaving in the upright plane across the bar. A hook leaves through its mouth.
 /// - Hooked: the object is stopped in two opposite level directions within half of its largest extent.
 /// - Balanced: anything else.
 pub fn freedom(scene: &Scene, rest: &Isometry3<f64>) -> Option<Kind> {
@@ -60,7 +62,7 @@ pub fn freedom(scene: &Scene, rest: &Isometry3<f64>) -> Option<Kind> {
     let mut points = scene.supporter.vertices.iter().map(|&vertex| to_object * Point3::from(vertex).cast());
     Some(if points.any(|point| object.has_in_cavity(&point)) {
         Kind::Capped
-    } else if pieces(scene, &object, rest).iter().any(|piece| is_linked(scene, &start, piece, extent)) {
+    } else if places(scene, &object, rest).iter().any(|place| is_linked(scene, &start, place, extent)) {
         Kind::Threaded
     } else if lines().iter().any(is_caught) {
         Kind::Hooked
@@ -83,23 +85,52 @@ fn stopped(overlap: &Overlap, from: &Isometry3<f64>, way: &Vector3<f64>, most: f
     distances.into_iter().find(|distance| !overlap.is_free(&(Translation3::from(way * *distance) * from)))
 }
 
-/// The pieces of the supporter around the places at which it carries the object at `rest`.
-fn pieces(scene: &Scene, object: &Surface, rest: &Isometry3<f64>) -> Vec<Solid> {
+/// A place at which the supporter carries the object.
+struct Place {
+    /// The supporter's triangles near it.
+    piece: Solid,
+    /// Level direction across the bar there.
+    across: Vector3<f64>,
+}
+
+/// The places at which a bar of the supporter that is not upright carries the object at `rest`.
+fn places(scene: &Scene, object: &Surface, rest: &Isometry3<f64>) -> Vec<Place> {
     let samples = sample_supporter(&scene.supporter.mesh(), SAMPLES, 1);
-    let mut places: Vec<Point3<f64>> = Vec::new();
+    let normals = samples.normals.unwrap_or_default();
+    let samples: Vec<(Point3<f64>, Vector3<f64>)> = (samples.points.iter().zip(&normals))
+        .map(|(&point, &normal)| (Point3::from(point).cast(), Vector3::from(normal).cast()))
+        .collect();
+    // The two sides of a surface that is not closed are alike.
+    let is_closed = scene.supporter.is_closed();
     let to_object = rest.inverse();
-    for (&point, normal) in samples.points.iter().zip(samples.normals.iter().flatten()) {
-        let point = Point3::from(point).cast();
-        // The two sides of a surface that is not closed are alike.
-        let rises = if scene.supporter.is_closed() { normal[2] } else { normal[2].abs() };
+    let mut at: Vec<Point3<f64>> = Vec::new();
+    for (point, normal) in &samples {
+        let rises = if is_closed { normal.z } else { normal.z.abs() };
         if rises > CARRYING
-            && places.iter().all(|other| (other - point).norm() > PLACES_APART)
+            && at.iter().all(|other| (other - point).norm() > PLACES_APART)
             && object.distance(&(to_object * point)) < TOUCHING
         {
-            places.push(point);
+            at.push(*point);
         }
     }
-    places.iter().map(|place| piece(scene.supporter, place)).collect()
+    let place =
+        |at: &Point3<f64>| Some(Place { piece: piece(scene.supporter, at), across: across(&samples, at)? });
+    at.iter().filter_map(place).collect()
+}
+
+/// The level direction across the bar at a place; `None` if the bar is upright. The bar is along the direction to which
+/// the normals around the place are perpendicular, the nearest most.
+fn across(samples: &[(Point3<f64>, Vector3<f64>)], at: &Point3<f64>) -> Option<Vector3<f64>> {
+    let mut spread = Matrix3::zeros();
+    for (point, normal) in samples {
+        let squared = (point - at).norm_squared() / (NEAR * NEAR);
+        if squared < 9.0 {
+            spread += normal * normal.transpose() * (-squared).exp();
+        }
+    }
+    let eigen = spread.symmetric_eigen();
+    let bar: Vector3<f64> = eigen.eigenvectors.column(eigen.eigenvalues.imin()).into();
+    bar.cross(&Vector3::z()).try_normalize(UPRIGHT)
 }
 
 /// The triangles of a shape that reach into the ball of radius [`PIECE`] around a point.
@@ -115,16 +146,28 @@ fn piece(solid: &Solid, at: &Point3<f64>) -> Solid {
     Solid { triangles, vertices: solid.vertices.clone(), ..Solid::default() }
 }
 
-/// Whether a piece of the supporter alone keeps the object from leaving upwards and sideways.
-fn is_linked(scene: &Scene, start: &Isometry3<f64>, piece: &Solid, extent: f64) -> bool {
-    let overlap = Overlap::new(&Scene { supporter: piece, ..scene.clone() });
-    let Some(height) = stopped(&overlap, start, &Vector3::z(), extent) else { return false };
-    lines().iter().any(|way| {
-        HEIGHTS.into_iter().all(|share| {
-            let from = Translation3::new(0.0, 0.0, share * (height - STEP)) * start;
-            [*way, -way].iter().all(|way| stopped(&overlap, &from, way, extent).is_some())
-        })
-    })
+/// Whether the piece of the supporter at a place alone keeps the object from leaving across the bar.
+fn is_linked(scene: &Scene, start: &Isometry3<f64>, place: &Place, extent: f64) -> bool {
+    let overlap = Overlap::new(&Scene { supporter: &place.piece, ..scene.clone() });
+    is_enclosed(&overlap, start, &place.across, extent)
+}
+
+/// Whether no sequence of steps along a level way and up or down takes the object farther than its extent. The farthest
+/// place is tried first.
+fn is_enclosed(overlap: &Overlap, start: &Isometry3<f64>, way: &Vector3<f64>, extent: f64) -> bool {
+    let (mut seen, mut open) = (HashSet::from([[0_i32; 2]]), BinaryHeap::from([(0, [0_i32; 2])]));
+    while let Some((_, [aside, up])) = open.pop() {
+        if STEP * f64::from(aside.abs().max(up.abs())) > extent {
+            return false;
+        }
+        for [aside, up] in [[aside + 1, up], [aside - 1, up], [aside, up + 1], [aside, up - 1]] {
+            let shift = (way * f64::from(aside) + Vector3::z() * f64::from(up)) * STEP;
+            if seen.insert([aside, up]) && overlap.is_free(&(Translation3::from(shift) * start)) {
+                open.push((aside * aside + up * up, [aside, up]));
+            }
+        }
+    }
+    true
 }
 
 /// The object's surface in its own coordinates, in millimetres as in the overlap test.
