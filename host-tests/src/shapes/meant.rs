@@ -94,7 +94,7 @@ const DEPTH_STEP: f64 = 0.001;
 /// Share of the clear radius within which a bar is in a hook in any direction.
 const MIDDLE: f64 = 0.5;
 /// Parts of the stem before and behind the middle of a neck that two bars may hold, m.
-const STEM: [f64; 2] = [-0.04, 0.015];
+const STEM: [f64; 2] = [-0.015, 0.025];
 /// Number of points of the stem that are tested.
 const STEM_POINTS: usize = 12;
 /// Cosine of the angle between the directions from the stem to two bars below which the bars are on opposite sides.
