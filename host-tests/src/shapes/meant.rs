@@ -193,8 +193,8 @@ impl Lines {
                     (at, sub(nearest_on(segment, at), at))
                 });
                 let (at, apart) = points.min_by(|a, b| length(a.1).total_cmp(&length(b.1)))?;
-                let apart = across(apart, axis);
-                (1e-6..reach + radius).contains(&length(apart)).then(|| (at, unit(apart)))
+                let (level, aside) = (dot(apart, axis).abs(), across(apart, axis));
+                (level < radius && (1e-6..reach + radius).contains(&length(aside))).then(|| (at, unit(aside)))
             })
             .collect();
         near.iter()
