@@ -48,7 +48,7 @@ enum Measure {
         #[arg(long, value_name = "DIR")]
         meshes: Option<PathBuf>,
         /// Largest number of pairs of real meshes.
-        #[arg(long, default_value_t = 40)]
+        #[arg(long, default_value_t = 53)]
         real_pairs: usize,
     },
 }
