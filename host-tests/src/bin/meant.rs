@@ -9,7 +9,7 @@ use hangpose::hanging::{HangingPose, Request, Rest};
 use hangpose::mechanics::{Contact, Kind};
 use host_tests::judge::{Bullet, Judge, Scene};
 use host_tests::predicted;
-use host_tests::shapes::Random;
+use host_tests::shapes::{Bar, Joint, Random};
 use host_tests::tables::case::{Case, Fit, made};
 use host_tests::tables::proportion::wilson;
 use host_tests::tables::real::real;
@@ -48,7 +48,7 @@ enum Measure {
         #[arg(long, value_name = "DIR")]
         meshes: Option<PathBuf>,
         /// Largest number of pairs of real meshes.
-        #[arg(long, default_value_t = 40)]
+        #[arg(long, default_value_t = 53)]
         real_pairs: usize,
     },
 }
@@ -123,6 +123,8 @@ fn params(case: &Case) -> Params {
 
 /// Largest distance between the main contacts of two poses at the same place, m.
 const SAME_PLACE: f32 = 0.02;
+/// Largest difference in radius and length, m, and tilt, rad, of two bars of the same size.
+const ALIKE: f32 = 1e-4;
 /// Largest coordinate by which a supporter is moved, m.
 const MOVED: f64 = 0.3;
 
@@ -131,9 +133,12 @@ const MOVED: f64 = 0.3;
 struct Change {
     /// The kinds in the original and in the turned frame; `None` where no pose was found.
     kinds: [Option<Kind>; 2],
+    /// The same by construction.
+    built: [Option<Kind>; 2],
     /// Distance between the main contacts, m.
     apart: f32,
-    /// Whether the same opening kind is joined with the same bar.
+    /// Whether an opening of the same kind is joined with the same bar or with one of the same size, such as another of a
+    /// tree: nothing tells those apart.
     is_same_bar: bool,
 }
 
@@ -142,8 +147,16 @@ impl Change {
         self.kinds[0] == self.kinds[1]
     }
 
+    fn is_built_alike(&self) -> bool {
+        self.built[0] == self.built[1]
+    }
+
+    fn is_same_place(&self) -> bool {
+        self.apart < SAME_PLACE || self.is_same_bar
+    }
+
     fn is_same(&self) -> bool {
-        self.is_same_kind() && (self.apart < SAME_PLACE || self.is_same_bar)
+        self.is_same_kind() && self.is_same_place()
     }
 }
 
@@ -160,10 +173,22 @@ fn turned(cases: &[Case], threads: usize) {
     println!("{} pairs, {} with a pose in one of the frames", cases.len(), found.len());
     share("the best pose is of the same kind", &Change::is_same_kind);
     share("of the same kind at the same place", &Change::is_same);
+    share("of the same kind by construction", &Change::is_built_alike);
+    share("of the same kind by construction at the same place", &|change| {
+        change.is_built_alike() && change.is_same_place()
+    });
     println!("\nOthers:");
-    for (case, Change { kinds, apart, .. }) in found.iter().filter(|(_, change)| !change.is_same()) {
-        let [original, turned] = kinds.map(|kind| kind.map_or("none", Kind::name));
-        println!("{}: {original}, turned {turned}; {:.0} mm apart", case.name, 1000.0 * apart);
+    let name = |kind: Option<Kind>| kind.map_or("none", Kind::name);
+    for (case, Change { kinds, built, apart, .. }) in found.iter().filter(|(_, change)| !change.is_same()) {
+        println!(
+            "{}: {}, turned {}; by construction {}, turned {}; {:.0} mm apart",
+            case.name,
+            name(kinds[0]),
+            name(kinds[1]),
+            name(built[0]),
+            name(built[1]),
+            1000.0 * apart
+        );
     }
 }
 
@@ -192,12 +217,23 @@ fn change(case: &Case) -> Change {
     let rests = [rest(&original), rest(&turned)];
     let kinds = rests.map(|rest| rest.map(|rest| rest.kind));
     let [Some(original), Some(turned)] = rests else {
-        return Change { kinds, apart: f32::INFINITY, is_same_bar: false };
+        return Change { kinds, built: [None; 2], apart: f32::INFINITY, is_same_bar: false };
     };
     let back = supporter_turn.inverse();
     let apart = (main_contact(&original) - back * main_contact(&turned)).norm();
-    let joints = [case.joined(&original.pose), case.joined(&(back * turned.pose * object_turn))];
-    Change { kinds, apart, is_same_bar: joints[0].is_some() && joints[0] == joints[1] }
+    let poses = [original.pose, back * turned.pose * object_turn];
+    let joints = poses.map(|pose| case.joined(&pose));
+    let size = |joint: Joint| {
+        let Bar { radius, length, tilt, .. } = case.bars[joint.bar];
+        Vector::new(radius, length, tilt)
+    };
+    let alike = |a, b| (size(a) - size(b)).norm() < ALIKE;
+    Change {
+        kinds,
+        built: poses.map(|pose| Some(case.hangs(&pose))),
+        apart,
+        is_same_bar: matches!(joints, [Some(a), Some(b)] if a.kind == b.kind && alike(a, b)),
+    }
 }
 
 /// Position of the contact that carries most.
@@ -289,8 +325,8 @@ const DECILES: usize = 10;
 /// A predicted pose and what became of it.
 struct Told {
     probability: f32,
-    hangs: bool,
-    robust: bool,
+    /// Whether it hangs, and whether it hangs robustly.
+    came: [bool; 2],
 }
 
 /// Prints how often poses of pairs that fit hang, by their probabilities. A pair of real meshes fits if one of its poses
@@ -311,31 +347,32 @@ fn probability(cases: &[Case], threads: usize) {
             10 * decile,
             10 * (decile + 1),
             bin.len(),
-            wilson(bin.iter().filter(|told| told.hangs).count(), bin.len()),
-            wilson(bin.iter().filter(|told| told.robust).count(), bin.len())
+            wilson(bin.iter().filter(|told| told.came[0]).count(), bin.len()),
+            wilson(bin.iter().filter(|told| told.came[1]).count(), bin.len())
         );
     }
     println!();
-    let outcomes: [(&str, fn(&Told) -> bool); 2] =
-        [("hangs", |told| told.hangs), ("robust", |told| told.robust)];
-    for (name, came) in outcomes {
+    for (which, name) in [(0, "hangs"), (1, "robust")] {
         let all = told.len() as f64;
-        let base = told.iter().filter(|told| came(told)).count() as f64 / all;
-        let error = |told: &Told| (f64::from(told.probability) - f64::from(u8::from(came(told)))).powi(2);
+        let base = told.iter().filter(|told| told.came[which]).count() as f64 / all;
+        let error =
+            |told: &Told| (f64::from(told.probability) - f64::from(u8::from(told.came[which]))).powi(2);
         let brier = told.iter().map(error).sum::<f64>() / all;
         println!(
             "{name}: base rate {:.1} %, Brier score {brier:.4}, Brier skill {:.3}, area under the ROC curve {:.3}",
             100.0 * base,
             1.0 - brier / (base * (1.0 - base)),
-            roc_area(&told, came)
+            roc_area(&told, which)
         );
     }
 }
 
 /// Share of the pairs of a pose that comes true and one that does not in which the first is said to be more probable;
 /// equal probabilities count half.
-fn roc_area(told: &[Told], came: fn(&Told) -> bool) -> f64 {
-    let of = |wanted: bool| told.iter().filter(move |told| came(told) == wanted).map(|told| told.probability);
+fn roc_area(told: &[Told], which: usize) -> f64 {
+    let of = |wanted: bool| {
+        told.iter().filter(move |told| told.came[which] == wanted).map(|told| told.probability)
+    };
     let wins: f64 = of(true)
         .flat_map(|yes| {
             of(false).map(move |no| if yes > no { 1.0 } else { 0.5 * f64::from(u8::from(yes == no)) })
@@ -352,12 +389,13 @@ fn tell(case: &Case) -> Vec<Told> {
         .iter()
         .filter_map(|pose| {
             let verdict = world.judge(&scene, &pose.pose);
-            let (hangs, robust) = (verdict.success(), verdict.success() && verdict.robust);
-            Some(Told { probability: pose.rest?.probability, hangs, robust })
+            let hangs = verdict.success();
+            Some(Told { probability: pose.rest?.probability, came: [hangs, hangs && verdict.robust] })
         })
         .collect();
     let fits = case.fit == Fit::Yes
         || case.fit == Fit::Unknown
-            && (told.iter().any(|told| told.hangs) || finds_a_pose(&case.object, &case.supporter, case.seed));
+            && (told.iter().any(|told| told.came[0])
+                || finds_a_pose(&case.object, &case.supporter, case.seed));
     if fits { told } else { Vec::new() }
 }

@@ -53,6 +53,15 @@ impl Overlap {
         SHIFTS.into_iter().find(frees).unwrap_or(deepest)
     }
 
+    /// The pose displaced by as little as separates the shapes, upwards if possible; `None` if `most` metres do not.
+    pub(super) fn separated(&self, pose: &Isometry3<f64>, most: f64) -> Option<Isometry3<f64>> {
+        let shifts = SHIFTS.into_iter().take_while(|shift| *shift <= most);
+        let ways = || std::iter::once(Vector3::z()).chain(directions());
+        let mut moved =
+            shifts.flat_map(|shift| ways().map(move |way| Translation3::from(way * shift) * pose));
+        moved.find(|moved| self.is_free(moved))
+    }
+
     /// Whether the shapes do not overlap.
     pub(crate) fn is_free(&self, pose: &Isometry3<f64>) -> bool {
         let mut into_supporter: Pose = pose.cast();

@@ -50,8 +50,8 @@ pub struct Joint {
 /// The opening of a made object that is joined with a bar of a made supporter when the object is at `rest`; that of the
 /// kind that people prefer if there are several. `None` if none is: the object is balanced.
 ///
-/// Bars are the centre lines of all round parts of the supporter, including bends and ends that nothing is meant to hang
-/// on. The opening is measured on the mesh by rays from its axis:
+/// Bars are the centre lines of all wires of the supporter, including bends and ends that nothing is meant to hang on. Wall
+/// plates and posts are no bars: an object that hangs on the edge of a plate is not joined. The opening is measured on the mesh by rays from its axis:
 ///
 /// - A hole is joined with a bar whose centre line passes it: seen from the axis, the bar is before the rim of the hole.
 ///   It is as deep as the planes across its axis in which as many rays meet the object as in its middle.
@@ -94,7 +94,7 @@ const DEPTH_STEP: f64 = 0.001;
 /// Share of the clear radius within which a bar is in a hook in any direction.
 const MIDDLE: f64 = 0.5;
 /// Parts of the stem before and behind the middle of a neck that two bars may hold, m.
-const STEM: [f64; 2] = [-0.04, 0.015];
+const STEM: [f64; 2] = [-0.015, 0.025];
 /// Number of points of the stem that are tested.
 const STEM_POINTS: usize = 12;
 /// Cosine of the angle between the directions from the stem to two bars below which the bars are on opposite sides.
@@ -193,8 +193,8 @@ impl Lines {
                     (at, sub(nearest_on(segment, at), at))
                 });
                 let (at, apart) = points.min_by(|a, b| length(a.1).total_cmp(&length(b.1)))?;
-                let apart = across(apart, axis);
-                (1e-6..reach + radius).contains(&length(apart)).then(|| (at, unit(apart)))
+                let (level, aside) = (dot(apart, axis).abs(), across(apart, axis));
+                (level < radius && (1e-6..reach + radius).contains(&length(aside))).then(|| (at, unit(aside)))
             })
             .collect();
         near.iter()

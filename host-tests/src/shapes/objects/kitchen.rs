@@ -48,7 +48,8 @@ fn spatula(random: &mut Random) -> HangObject {
         ],
         false,
     );
-    HangObject::new(&builder).hole([0.0; 3], Z)
+    let neck = OpeningKind::Neck { head_radius: broad as f32 };
+    HangObject::new(&builder).hole([0.0; 3], Z).also(neck, [length, 0.0, 0.0], X, 0.008)
 }
 
 fn ladle(random: &mut Random, has_hook: bool) -> HangObject {
@@ -67,10 +68,14 @@ fn ladle(random: &mut Random, has_hook: bool) -> HangObject {
     // The handle runs along x to the rim of the bowl, which opens along z.
     builder.place(&cup, [X, Y, Z], [length + radius, 0.0, 0.0]);
     let bowl_at = [length + radius, 0.0, -0.5 * radius];
-    let hollow = |ladle: HangObject| ladle.also(OpeningKind::Rim, bowl_at, Z, 0.5 * radius);
+    let neck = OpeningKind::Neck { head_radius: radius as f32 };
+    let bowl = |ladle: HangObject| {
+        let ladle = ladle.also(OpeningKind::Rim, bowl_at, Z, 0.5 * radius);
+        ladle.also(neck, [length, 0.0, 0.0], X, 0.008)
+    };
     if !has_hook {
         handle_with_hole(&mut builder, random, length + 0.001);
-        return hollow(HangObject::new(&builder).hole([0.0; 3], Z));
+        return bowl(HangObject::new(&builder).hole([0.0; 3], Z));
     }
     let thick = random.range(0.0025, 0.004);
     let bend = random.range(0.011, 0.018);
@@ -78,7 +83,7 @@ fn ladle(random: &mut Random, has_hook: bool) -> HangObject {
     let mut path = vec![[length, 0.0, 0.0]];
     path.extend(arc([0.0, 0.0, -bend], scale(Z, bend), scale(X, -bend), [0.0, tip], 16));
     builder.sweep(&path, Y, &ellipse(1.6 * thick, thick));
-    hollow(HangObject::new(&builder).hook([0.0, 0.0, -bend], Y, 2.0 * (bend - thick)))
+    bowl(HangObject::new(&builder).hook([0.0, 0.0, -bend], Y, 2.0 * (bend - thick)))
 }
 
 /// A blade and a handle with a hole or a ring at its end, or a cleaver with a hole in the blade.

@@ -2,7 +2,7 @@
 
 use super::super::builder::Builder;
 use super::super::sections::{circle, ellipse};
-use super::super::vector::{Y, Z, arc, scale};
+use super::super::vector::{X, Y, Z, arc, scale};
 use super::{HangObject, OpeningKind, Random};
 
 /// A strung hoop with a handle; a tennis racquet has an open throat.
@@ -42,7 +42,8 @@ pub(super) fn racquet(random: &mut Random) -> HangObject {
     builder.sweep(&[[neck, 0.0, 0.0], [neck + handle, 0.0, 0.0]], Y, &ellipse(grip, 0.85 * grip));
     if !is_tennis {
         builder.tube(&[[a, 0.0, 0.0], [neck + 0.02, 0.0, 0.0]], 0.0035);
-        return between_strings(HangObject::new(&builder).hole([0.0; 3], Z), [a, b], spacing, gut, 0.0035);
+        let racquet = with_necks(HangObject::new(&builder).hole([0.0; 3], Z), [a, b], neck, grip);
+        return between_strings(racquet, [a, b], spacing, gut);
     }
     for side in [-1.0, 1.0] {
         let [cos, sin] = super::super::vector::turn(32.0);
@@ -50,18 +51,22 @@ pub(super) fn racquet(random: &mut Random) -> HangObject {
         builder.tube(&[start, [neck + 0.01, side * 0.45 * grip, 0.0]], 0.8 * frame);
     }
     let racquet = HangObject::new(&builder).hole([0.0; 3], Z).hole([a + 0.3 * shaft, 0.0, 0.0], Z);
-    between_strings(racquet, [a, b], spacing, gut, 0.03)
+    between_strings(with_necks(racquet, [a, b], neck, grip), [a, b], spacing, gut)
 }
 
-/// Adds the openings between the strings of a hoop of half axes `a` and `b`, and the neck by which it hangs between two
-/// bars.
-fn between_strings(
-    mut racquet: HangObject,
-    [a, b]: [f64; 2],
-    spacing: f64,
-    gut: f64,
-    neck_radius: f64,
-) -> HangObject {
+/// Adds the ends of the shaft, by which a racquet hangs between two bars: the hoop or the handle is above them.
+fn with_necks(racquet: HangObject, [a, b]: [f64; 2], neck: f64, grip: f64) -> HangObject {
+    let below = |head: f64| OpeningKind::Neck { head_radius: head as f32 };
+    racquet.also(below(b), [1.15 * a, 0.0, 0.0], scale(X, -1.0), 0.0035).also(
+        below(grip),
+        [neck, 0.0, 0.0],
+        X,
+        0.0035,
+    )
+}
+
+/// Adds the openings between the strings of a hoop of half axes `a` and `b`.
+fn between_strings(mut racquet: HangObject, [a, b]: [f64; 2], spacing: f64, gut: f64) -> HangObject {
     let count = (a / spacing) as i32;
     for (i, j) in (-count..=count).flat_map(|i| (-count..=count).map(move |j| (i, j))) {
         let [x, y] = [i, j].map(|k| f64::from(k) * spacing);
@@ -69,6 +74,5 @@ fn between_strings(
             racquet = racquet.also(OpeningKind::Hole, [x, y, 0.0], Z, spacing / 2.0 - gut);
         }
     }
-    let neck = OpeningKind::Neck { head_radius: b as f32 };
-    racquet.also(neck, [1.15 * a, 0.0, 0.0], [-1.0, 0.0, 0.0], neck_radius)
+    racquet
 }
