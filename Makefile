@@ -60,6 +60,7 @@ tables: setup
 meant: setup
 	cargo run --release -p host-tests --bin meant -- turned --pairs 90 --seed 31
 	cargo run --release -p host-tests --bin meant -- tolerance --pairs 90 --seed 31
+	cargo run --release -p host-tests --bin meant -- many --pairs 30 --seed 31
 	cargo run --release -p host-tests --bin meant -- probability --pairs 90 --seed 31 $(if $(MESHES),--meshes $(MESHES))
 
 peer_python = build/peer/bin/python

@@ -125,7 +125,6 @@ mod tests {
             request(RequestError::On(RegionError::Index { index: u32::MAX, count: most })),
             request(RequestError::Approach),
             request(RequestError::Scene { point: most, position: worst }),
-            request(RequestError::Hung { index: most }),
             request(RequestError::Distinct),
         ] {
             let text = failure.to_string();

@@ -104,7 +104,6 @@ impl Reason for Failure {
                 | CloudError::NormalCount { .. }
                 | CloudError::MarkCount { .. },
             ) => HANGPOSE_ERROR_COUNT,
-            Self::Request { error: RequestError::Hung { .. }, .. } => HANGPOSE_ERROR_NO_DISTANCE_FIELD,
             Self::Request {
                 error:
                     RequestError::On(RegionError::Index { .. }) | RequestError::By(RegionError::Index { .. }),

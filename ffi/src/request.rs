@@ -256,7 +256,6 @@ fn request_place(error: RequestError, request: &Request) -> Place {
         RequestError::Scene { point, position } => {
             Place::of("request.scene_points").coordinate(Some(point), position)
         }
-        RequestError::Hung { index } => Place { index: Some(index), ..Place::of("request.hung") },
         RequestError::Distinct => match request.distinct {
             Distance { position, .. } if !(0.0..=MAX_LENGTH).contains(&position) => {
                 outside("request.distinct_position", position, MAX_LENGTH)

@@ -1,6 +1,7 @@
 //! Rigid shapes for the judges.
 
 use hangpose::geometry::Mesh;
+use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::HashMap;
 
 /// A rigid shape: its surface and convex parts that fill it. Metres; a supporter has z up.
@@ -45,6 +46,30 @@ impl Solid {
     /// The surface as the predictor takes it.
     pub fn mesh(&self) -> Mesh<'_> {
         Mesh::new(&self.vertices, &self.triangles).expect("every vertex is finite and every index in range")
+    }
+
+    /// This shape with others at their poses, as one rigid shape.
+    pub fn with<'a>(&self, others: impl IntoIterator<Item = (&'a Solid, Isometry3<f32>)>) -> Self {
+        let mut all = self.clone();
+        for (other, pose) in others {
+            let place = |point: &[f32; 3]| -> [f32; 3] { (pose * Point3::from(*point)).into() };
+            let turn = |axis: [f32; 3]| -> [f32; 3] { (pose * Vector3::from(axis)).into() };
+            let first = all.vertices.len() as u32;
+            all.vertices.extend(other.vertices.iter().map(place));
+            all.triangles
+                .extend(other.triangles.iter().map(|triangle| triangle.map(|vertex| first + vertex)));
+            all.parts.extend(other.parts.iter().map(|part| match part {
+                Part::Hull(points) => Part::Hull(points.iter().map(place).collect()),
+                Part::Capsule { from, to, radius } => {
+                    Part::Capsule { from: place(from), to: place(to), radius: *radius }
+                }
+                Part::Cuboid { centre, axes, half_extents } => {
+                    Part::Cuboid { centre: place(centre), axes: axes.map(turn), half_extents: *half_extents }
+                }
+            }));
+            all.is_shell |= other.is_shell;
+        }
+        all
     }
 
     /// Whether the surface bounds a volume: triangles use each edge equally often in both directions. Vertices at the

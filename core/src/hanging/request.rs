@@ -43,7 +43,7 @@ pub struct Approach {
 /// An object that hangs already.
 #[derive(Clone, Copy)]
 pub struct Hung<'a> {
-    /// The object. It must have been analysed with voxels.
+    /// The object.
     pub object: &'a Object<'a>,
     /// Its pose: object to supporter coordinates.
     pub pose: Pose,
@@ -98,9 +98,6 @@ impl<'a> Request<'a> {
         if let Some(point) = self.scene.iter().position(|point| !is_usable(point)) {
             return Err(RequestError::Scene { point, position: self.scene[point] });
         }
-        if let Some(index) = self.hung.iter().position(|hung| hung.object.distance_field().is_none()) {
-            return Err(RequestError::Hung { index });
-        }
         let Distance { position, rotation } = self.distinct;
         if !((0.0..=10.0).contains(&position) && (0.0..=core::f32::consts::PI).contains(&rotation)) {
             return Err(RequestError::Distinct);
@@ -124,11 +121,11 @@ impl Default for Request<'_> {
     }
 }
 
-/// Share of its probability with which a pose of a kind that is not preferred is ranked. A preferred pose that holds in two of
-/// three cases comes before another kind that is certain: what is asked for is tried first, and the next one remains.
-const LATER_WEIGHT: f32 = 0.6;
+/// Share of its probability with which a pose of a kind that is not preferred is ranked. A preferred pose that holds in three of
+/// four cases comes before another kind that is certain: what is asked for is tried first, and the next one remains.
+const LATER_WEIGHT: f32 = 0.75;
 /// The same for balanced poses: they come last unless hardly anything else holds.
-const BALANCED_WEIGHT: f32 = 0.4;
+const BALANCED_WEIGHT: f32 = 0.5;
 
 /// Why a request cannot be met.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -148,11 +145,6 @@ pub enum RequestError {
         /// Its coordinates.
         position: [f32; 3],
     },
-    /// An object that hangs already was analysed without voxels.
-    Hung {
-        /// Index of the object.
-        index: usize,
-    },
     /// A distance between poses is negative, too large, or not a number.
     Distinct,
 }
@@ -169,10 +161,6 @@ impl fmt::Display for RequestError {
             Self::Scene { point, position } => write!(
                 f,
                 "point {point} of the scene is at {position:?}: every coordinate must be a number of metres within ±{MAX_COORDINATE}"
-            ),
-            Self::Hung { index } => write!(
-                f,
-                "object {index} of those that hang already was analysed with voxels = 0: analyse it with the params of the prediction"
             ),
             Self::Distinct => f.write_str(
                 "the distance between poses must be 0 to 10 metres and 0 to π radians",

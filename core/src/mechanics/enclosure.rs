@@ -28,12 +28,12 @@ pub(super) enum Enclosure {
 const ROWS: usize = 36;
 /// Columns of the grid of directions, around the bar.
 const COLUMNS: usize = 2 * ROWS;
-/// Rows that lead towards an end of the bar: 60 degrees around its axis, as far as a thin loop hangs askew.
-const END_ROWS: usize = ROWS / 3;
+/// Rows that lead towards an end of the bar: 35 degrees around its axis, more than the error of its direction next to a post.
+const END_ROWS: usize = 7;
 /// Growth of the ball with its distance, no unit: half of a row, so that no material passes between two directions.
 const GROWTH: f32 = 0.044;
 /// Free ways that lead to an end at least, of [`END_ROWS`] times [`COLUMNS`]. Fewer are a hole through which no bar passes.
-const MIN_WAYS: usize = 16;
+const MIN_WAYS: usize = 8;
 /// Largest distance between the material of two neighbouring directions, in radii of the ball there: twice as wide is a gap
 /// through which it passes.
 const MAX_GAP: f32 = 1.5;

@@ -3,13 +3,13 @@
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
-use hangpose::Params;
 use hangpose::geometry::{Cloud, Mesh, Point, Pose, Vector};
-use hangpose::hanging::{HangingPose, Request, Rest};
+use hangpose::hanging::{HangingPose, Request, Rest, predict_bytes, predict_many};
 use hangpose::mechanics::{Contact, Kind};
+use hangpose::{Monitor, Params, analyze_object, analyze_supporter, sample_supporter};
 use host_tests::judge::{Bullet, Judge, Scene};
 use host_tests::predicted;
-use host_tests::shapes::{Bar, Joint, Random};
+use host_tests::shapes::{Bar, Joint, OBJECTS, Random, SUPPORTERS, meant};
 use host_tests::tables::case::{Case, Fit, made};
 use host_tests::tables::proportion::wilson;
 use host_tests::tables::real::real;
@@ -19,6 +19,7 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
 
 #[derive(Parser)]
 #[command(about)]
@@ -42,6 +43,8 @@ enum Measure {
     Turned,
     /// Share of best poses that still hang when they are let go as far off as they tolerate.
     Tolerance,
+    /// Share of the pegs of generated mug trees that are filled when as many mugs as pegs are hung at once.
+    Many,
     /// Whether poses hang as often as their probabilities say.
     Probability {
         /// Folder of real meshes with a manifest.json, which are judged as well.
@@ -73,6 +76,7 @@ fn main() -> Result<()> {
             cases.truncate(pairs);
             turned(&cases, threads);
         }
+        Measure::Many => many(pairs, seed, threads),
         Measure::Tolerance => tolerance(&fitting(pairs, seed), threads),
         Measure::Probability { meshes, real_pairs } => {
             println!("Generated pairs:\n");
@@ -91,7 +95,7 @@ fn fitting(pairs: usize, seed: u64) -> Vec<Case> {
 }
 
 /// What `measure` gives for each of the cases, in their order.
-fn each<T: Send>(cases: &[Case], threads: usize, measure: impl Fn(&Case) -> T + Sync) -> Vec<T> {
+fn each<C: Sync, T: Send>(cases: &[C], threads: usize, measure: impl Fn(&C) -> T + Sync) -> Vec<T> {
     let (next, found) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     std::thread::scope(|scope| {
         for _ in 0..threads {
@@ -398,4 +402,73 @@ fn tell(case: &Case) -> Vec<Told> {
             && (told.iter().any(|told| told.came[0])
                 || finds_a_pose(&case.object, &case.supporter, case.seed));
     if fits { told } else { Vec::new() }
+}
+
+/// Number of points that a tree is sampled to.
+const TREE_POINTS: usize = 10_000;
+
+/// What became of the mugs of one tree.
+struct Filled {
+    pegs: usize,
+    /// Mugs that have a pose.
+    placed: usize,
+    /// Of them, those that hang in Bullet beside the others, which are fixed at rest.
+    hang: usize,
+    seconds: f64,
+}
+
+/// Prints the share of the pegs of mug trees that are filled: the mugs are of different shapes, and each hangs by its handle
+/// alone.
+fn many(trees: usize, seed: u64, threads: usize) {
+    let seeds: Vec<u64> = (0..trees as u64).map(|k| seed.wrapping_mul(10_007).wrapping_add(k)).collect();
+    let filled = each(&seeds, threads, |seed| fill(*seed));
+    let sum = |count: fn(&Filled) -> usize| filled.iter().map(count).sum::<usize>();
+    let (pegs, placed, hang) = (sum(|f| f.pegs), sum(|f| f.placed), sum(|f| f.hang));
+    println!("{trees} trees with {pegs} pegs");
+    println!("mugs with a pose: {placed}, {} % of the pegs", wilson(placed, pegs));
+    println!("that hang beside the others: {hang}, {} % of the pegs", wilson(hang, pegs));
+    let seconds: f64 = filled.iter().map(|filled| filled.seconds).sum();
+    println!("{:.2} s a tree for the poses, on one thread", seconds / trees as f64);
+}
+
+fn fill(seed: u64) -> Filled {
+    let named = |name: &str| OBJECTS.iter().find(|kind| kind.name == name).expect("there are mugs");
+    let tree = SUPPORTERS.iter().find(|kind| kind.name == "mug tree").expect("there are trees").make(seed);
+    let pegs = tree.bars.len();
+    let mugs: Vec<_> = (0..)
+        .map(|k| named("mug").make(seed.wrapping_mul(1009).wrapping_add(k)))
+        .filter(|mug| meant(mug, &tree) == Some(Kind::Threaded))
+        .take(pegs)
+        .collect();
+    let params = Params { seed, ..Params::default() };
+    let cloud = sample_supporter(&tree.solid.mesh(), TREE_POINTS, seed);
+    let (monitor, mut memory) = (Monitor::new(), Vec::new());
+    let supporter =
+        analyze_supporter(&cloud.cloud().expect("samples are valid"), &params, &mut memory, &monitor)
+            .expect("the memory is enough");
+    let mut memories: Vec<Vec<u8>> = mugs.iter().map(|_| Vec::new()).collect();
+    let objects: Vec<_> = mugs
+        .iter()
+        .zip(&mut memories)
+        .map(|(mug, memory)| {
+            analyze_object(&mug.solid.mesh(), &params, memory, &monitor).expect("the memory is enough")
+        })
+        .collect();
+    let objects: Vec<_> = objects.iter().collect();
+    let mut poses = vec![None; pegs];
+    let mut memory = vec![0; predict_bytes(&supporter.limits())];
+    let start = Instant::now();
+    let found = predict_many(&objects, &supporter, &Request::ANY, &params, &mut poses, &mut memory, &monitor)
+        .expect("the params are valid");
+    let seconds = start.elapsed().as_secs_f64();
+    let rest = |pose: &HangingPose| pose.rest.map_or(pose.pose, |rest| rest.pose);
+    let hangs = |index: usize| {
+        let others = mugs.iter().zip(&poses).enumerate().filter(|(other, _)| *other != index);
+        let fixed = others.filter_map(|(_, (mug, pose))| Some((&mug.solid, rest(pose.as_ref()?))));
+        let supporter = tree.solid.with(fixed);
+        let scene = Scene { tilt: false, ..Scene::new(&mugs[index].solid, &supporter) };
+        let pose = poses[index].as_ref();
+        pose.is_some_and(|pose| Bullet::default().world(&scene).judge(&scene, &pose.pose).success())
+    };
+    Filled { pegs, placed: found.placed, hang: (0..pegs).filter(|index| hangs(*index)).count(), seconds }
 }

@@ -6,8 +6,9 @@ use super::counts::CandidateCounts;
 use super::object_contact::ObjectContact;
 use super::support_contact::SupportContact;
 use crate::geometry::{Point, Pose, Vector, any_perpendicular, unit_or};
-use crate::hanging::region::Region;
+use crate::hanging::request::Request;
 use crate::hanging::settling::CLEARANCE;
+use crate::hanging::settling::wishes::is_clear_of_scene;
 use crate::mechanics::{Body, Support, first_within};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
@@ -26,12 +27,15 @@ pub(super) struct Candidate {
 /// Makes candidates in the order of their scores.
 pub(super) struct CandidateSearch<'a> {
     scene: (&'a Body<'a>, &'a Support<'a>),
+    request: &'a Request<'a>,
     up: Vector,
     contacts: &'a [ObjectContact],
     places: &'a mut [Place],
     /// Two for each contact of the object: its bar direction along the supporter's bars, and across them.
     ways: &'a mut [Way],
     pub(super) counts: CandidateCounts,
+    /// Clear poses that touch the scene or an object that hangs already.
+    pub(super) in_scene: usize,
 }
 
 /// A contact of the object in one of its two directions, and how far its trials have got.
@@ -78,11 +82,11 @@ impl<'a> CandidateSearch<'a> {
         array_bytes::<Place>(MAX_SUPPORT_CONTACTS).saturating_add(array_bytes::<Way>(2 * MAX_OBJECT_CONTACTS))
     }
 
-    /// Lays the contacts that are in the region `by` of the object on `supports`.
+    /// Lays the contacts that are in the requested region of the object on `supports`.
     pub(super) fn new(
         scene: (&'a Body<'a>, &'a Support<'a>),
         contacts: &'a [ObjectContact],
-        by: &Region,
+        request: &'a Request<'a>,
         supports: &[SupportContact],
         up: Vector,
         arena: &mut Arena<'a>,
@@ -94,7 +98,7 @@ impl<'a> CandidateSearch<'a> {
         let ways = arena.slice::<Way>(2 * contacts.len())?;
         for (k, way) in ways.iter_mut().enumerate() {
             let contact = &contacts[k / 2];
-            if !by.contains(&contact.position) {
+            if !request.by.contains(&contact.position) {
                 way.score = f32::NEG_INFINITY;
                 continue;
             }
@@ -105,7 +109,8 @@ impl<'a> CandidateSearch<'a> {
                 + if is_along(k) && contact.is_in_loop() { LOOP_BONUS } else { 0.0 }
                 - if contact.is_enclosed() { ENCLOSED_PENALTY } else { 0.0 };
         }
-        Ok(Self { scene, up, contacts, places, ways, counts: CandidateCounts::default() })
+        let counts = CandidateCounts::default();
+        Ok(Self { scene, request, up, contacts, places, ways, counts, in_scene: 0 })
     }
 
     /// The candidate with the highest score that has not been returned yet.
@@ -153,6 +158,10 @@ impl<'a> CandidateSearch<'a> {
             self.ways[index].visited += 1;
             if let Some(pose) = self.lay(index, place, meter)? {
                 self.counts.clear += 1;
+                if !is_clear_of_scene(self.scene.0, self.request, &pose, CLEARANCE, meter)? {
+                    self.in_scene += 1;
+                    continue;
+                }
                 let way = &mut self.ways[index];
                 (way.found, way.is_waiting, way.place) = (found + 1, 1, place as u32);
                 (way.rotation, way.translation) =

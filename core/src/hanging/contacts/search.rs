@@ -49,12 +49,13 @@ pub(in crate::hanging) fn search(
     let is_by =
         !request.by.is_limited() || contacts.iter().any(|contact| request.by.contains(&contact.position));
     settling.counts.outside += usize::from(!is_on || !is_by);
-    let mut candidates = CandidateSearch::new(bodies, contacts, &request.by, places, up, &mut arena)?;
+    let mut candidates = CandidateSearch::new(bodies, contacts, request, places, up, &mut arena)?;
     let mut best = Best::new(poses);
     let searched = match scene.params.settle {
         true => release(&mut candidates, &mut settling, &mut best, meter),
         false => list(&mut candidates, &mut best, meter),
     };
+    settling.counts.in_scene += candidates.in_scene;
     let counts = Counts { candidates: candidates.counts, ..counts };
     Ok(Found { poses: best.len(), counts, settling: settling.counts, stop: searched.err() })
 }
@@ -90,8 +91,8 @@ fn release(
         let stays = settling.release(&pose, poses, meter)?;
         candidates.discount(&candidate, if stays { REST_SHARE } else { 1.0 });
         let counts = &settling.counts;
-        let is_spent = |divisor: usize| counts.probable > 0 && divisor * (attempt + 1) >= attempts;
-        if counts.firm_as_preferred >= firm_enough || is_spent(ATTEMPT_DIVISOR) {
+        let has_enough = counts.firm_as_preferred >= firm_enough;
+        if has_enough || counts.probable > 0 && ATTEMPT_DIVISOR * (attempt + 1) >= attempts {
             break;
         }
         // Caps alone are no reason to stop, but to look elsewhere.

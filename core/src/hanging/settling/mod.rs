@@ -3,7 +3,7 @@
 mod probability;
 pub(super) mod rest;
 mod tolerance;
-mod wishes;
+pub(super) mod wishes;
 
 pub use rest::{Rest, Tolerance};
 
@@ -21,6 +21,7 @@ use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
 use crate::perception::far_side;
+use wishes::is_clear_of_scene;
 
 /// What became of the poses that were released.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -149,7 +150,7 @@ impl<'a> Settling<'a> {
         if !is_off_surface(scene, &start.pose, CLEARANCE, meter)? {
             return Ok(false);
         }
-        if !self.is_clear_of_scene(&start.pose, CLEARANCE, meter)? {
+        if !is_clear_of_scene(self.body, self.request, &start.pose, CLEARANCE, meter)? {
             self.counts.in_scene += 1;
             return Ok(false);
         }

@@ -2,8 +2,8 @@
 
 use super::{CLEARANCE, Settling};
 use crate::geometry::{Pose, Vector, any_perpendicular, rotate_about};
-use crate::hanging::request::Approach;
-use crate::mechanics::{Contact, Kind, first_within, is_clear_of_points, is_clear_of_surface};
+use crate::hanging::request::{Approach, Request};
+use crate::mechanics::{Body, Contact, Kind, first_within, is_clear_of_points, is_clear_of_surface};
 use crate::monitor::{Meter, Stop};
 use nalgebra::Translation3;
 
@@ -14,23 +14,23 @@ const APPROACH_STEP: f32 = 0.002;
 /// Directions tried on either of two circles in the cone of an approach, beside its axis.
 const AROUND: usize = 8;
 
-impl Settling<'_> {
-    /// Whether the object at `pose` is at least `clearance` metres away from the scene and from what hangs already.
-    pub(super) fn is_clear_of_scene(
-        &self,
-        pose: &Pose,
-        clearance: f32,
-        meter: &mut Meter,
-    ) -> Result<bool, Stop> {
-        for hung in self.request.hung {
-            let other = (hung.object.surface(), &hung.pose);
-            if !is_clear_of_surface(self.body, pose, other, clearance, meter)? {
-                return Ok(false);
-            }
+/// Whether the object at `pose` is at least `clearance` metres away from the scene and from what hangs already.
+pub(in crate::hanging) fn is_clear_of_scene(
+    body: &Body,
+    request: &Request,
+    pose: &Pose,
+    clearance: f32,
+    meter: &mut Meter,
+) -> Result<bool, Stop> {
+    for hung in request.hung {
+        if !is_clear_of_surface(body, pose, (hung.object.surface(), &hung.pose), clearance, meter)? {
+            return Ok(false);
         }
-        is_clear_of_points(self.body, pose, self.request.scene, clearance, meter)
     }
+    is_clear_of_points(body, pose, request.scene, clearance, meter)
+}
 
+impl Settling<'_> {
     /// Whether the object hangs where and in the way that was asked for, at its rest pose and its release pose. Counts why not.
     pub(super) fn is_as_asked(
         &mut self,
@@ -39,13 +39,14 @@ impl Settling<'_> {
         kind: Kind,
         meter: &mut Meter,
     ) -> Result<bool, Stop> {
+        let (body, request) = (self.body, self.request);
+        let is_clear =
+            |pose: &Pose, meter: &mut Meter| is_clear_of_scene(body, request, pose, CLEARANCE, meter);
         if !self.hangs_in_region(rest, contacts) {
             self.counts.outside += 1;
         } else if !self.request.allow.contains(kind) {
             self.counts.other_kind += 1;
-        } else if !self.is_clear_of_scene(rest, CLEARANCE, meter)?
-            || !self.is_clear_of_scene(release, CLEARANCE, meter)?
-        {
+        } else if !is_clear(rest, meter)? || !is_clear(release, meter)? {
             self.counts.in_scene += 1;
         } else {
             return Ok(true);
@@ -99,7 +100,7 @@ impl Settling<'_> {
             let back = way * -(length * step as f32 / steps as f32);
             let pose = Translation3::from(back) * release;
             let is_free = first_within((self.body, self.support), &pose, 0.0, meter)?.is_none()
-                && self.is_clear_of_scene(&pose, 0.0, meter)?;
+                && is_clear_of_scene(self.body, self.request, &pose, 0.0, meter)?;
             if !is_free {
                 return Ok(false);
             }
