@@ -428,8 +428,9 @@ fn assert_hangs(poses: &[HangingPose], scene: &Scene, params: &Params) {
         let mut last = Kind::ALL.map(|kind| (kind, 1.0));
         for pose in poses {
             let rest = pose.rest.unwrap();
+            // Within a kind, only a longer lever comes before a higher probability, and it counts for a tenth.
             let (_, last) = last.iter_mut().find(|(kind, _)| *kind == rest.kind).unwrap();
-            assert!((params.min_probability..=*last).contains(&rest.probability), "{}", rest.probability);
+            assert!(rest.probability >= params.min_probability && rest.probability <= *last / 0.9, "{rest:?}");
             *last = rest.probability;
             let inverse = pose.pose.inverse();
             let distance = |p: &Point| object.surface().signed_distance(&(inverse * p));
@@ -597,16 +598,19 @@ fn exactly_enough_memory_lets_go() {
 fn a_work_limit_gives_what_has_come_to_rest_so_far() {
     let scene = Scene::key_on_peg();
     let params = Params { firm_enough: 1000, settle_attempts: 12, ..product() };
+    // Poses that are alike replace each other, so that a part would not be contained in the whole.
+    let request = Request { distinct: Distance { position: 0.0, rotation: 0.0 }, ..Request::ANY };
     scene.analyse(&params, &Monitor::new(), |object, supporter| {
+        let mut memory = vec![0; predict_bytes(&scene.limits(&params))];
         let mut slots = [HangingPose::default(); 50];
-        let full = predict(object, supporter, &params, &mut slots, &Monitor::new()).unwrap();
+        let full = super::predict(object, supporter, &request, &params, &mut slots, &mut memory, &Monitor::new()).unwrap();
         assert_eq!(full.stopped, None);
         assert!(full.poses.len() > 1, "{:?}", full.counts);
         let mut partial = 0;
         for tenths in [1, 5, 8, 9] {
             let monitor = Monitor::with_work_limit(full.work.distance_queries * tenths / 10);
             let mut slots = [HangingPose::default(); 50];
-            let part = predict(object, supporter, &params, &mut slots, &monitor).unwrap();
+            let part = super::predict(object, supporter, &request, &params, &mut slots, &mut memory, &monitor).unwrap();
             assert_eq!((part.stopped, part.rejection), (Some(Stop::WorkLimit), None));
             assert!(part.poses.iter().all(|pose| full.poses.contains(pose)));
             partial += usize::from(!part.poses.is_empty() && part.poses.len() < full.poses.len());
@@ -614,7 +618,7 @@ fn a_work_limit_gives_what_has_come_to_rest_so_far() {
         assert!(partial > 0, "some limit leaves some of them");
         let monitor = Monitor::new();
         monitor.cancel();
-        let cancelled = predict(object, supporter, &params, &mut slots, &monitor).unwrap();
+        let cancelled = super::predict(object, supporter, &request, &params, &mut slots, &mut memory, &monitor).unwrap();
         assert_eq!((cancelled.stopped, cancelled.poses.len()), (Some(Stop::Cancelled), 0));
     });
 }
