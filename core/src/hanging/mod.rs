@@ -18,6 +18,8 @@ mod predict;
 mod region;
 mod rejection;
 mod request;
+#[cfg(test)]
+mod request_tests;
 mod samples;
 mod scene;
 mod settling;

@@ -14,7 +14,7 @@ fn fast() -> Params {
     Params { samples: 3000, centre_of_mass: CentreOfMass::Volume, max_collision: 0.01, ..Params::paper() }
 }
 
-struct Scene {
+pub(super) struct Scene {
     object: Shape,
     points: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,
@@ -22,7 +22,7 @@ struct Scene {
 
 impl Scene {
     /// A ring of 30 mm on a horizontal peg of 5 mm, turned by `yaw`.
-    fn ring_on_peg(yaw: f32) -> Self {
+    pub(super) fn ring_on_peg(yaw: f32) -> Self {
         let object = test_shapes::torus(0.030, 0.004, 72, 24);
         let along = Vector::new(yaw.cos(), yaw.sin(), 0.0) * 0.05;
         let middle = Point::new(0.3, -0.2, 0.5);
@@ -31,7 +31,7 @@ impl Scene {
     }
 
     /// A handle with a bar: nothing about it is symmetric.
-    fn key_on_peg() -> Self {
+    pub(super) fn key_on_peg() -> Self {
         let mut scene = Self::ring_on_peg(0.0);
         let bar = test_shapes::ball(1.0, 24, 24)
             .map(|p| Point::new(0.005 * p.x, 0.04 * p.y, 0.003 * p.z) + Vector::new(0.004, 0.07, 0.001));
@@ -52,7 +52,7 @@ impl Scene {
         scene
     }
 
-    fn limits(&self, params: &Params) -> Limits {
+    pub(super) fn limits(&self, params: &Params) -> Limits {
         Limits { points: self.points.len(), ..Object::limits(&self.object.mesh(), params) }
     }
 
@@ -60,7 +60,12 @@ impl Scene {
         Cloud::new(&self.points, Some(&self.normals)).unwrap()
     }
 
-    fn analyse(&self, params: &Params, monitor: &Monitor, check: impl FnOnce(&Object, &Supporter)) {
+    pub(super) fn analyse(
+        &self,
+        params: &Params,
+        monitor: &Monitor,
+        check: impl FnOnce(&Object, &Supporter),
+    ) {
         let limits = self.limits(params);
         let (mut object, mut supporter) =
             (vec![0; Object::bytes(&limits)], vec![0; Supporter::bytes(&limits)]);
@@ -395,7 +400,7 @@ fn broken_normals_are_mended_and_counted() {
 }
 
 /// The product with few samples and a coarse field.
-fn product() -> Params {
+pub(super) fn product() -> Params {
     Params { samples: 2000, voxels: 100_000, ..Params::default() }
 }
 
@@ -430,7 +435,10 @@ fn assert_hangs(poses: &[HangingPose], scene: &Scene, params: &Params) {
             let rest = pose.rest.unwrap();
             // Within a kind, only a longer lever comes before a higher probability, and it counts for a tenth.
             let (_, last) = last.iter_mut().find(|(kind, _)| *kind == rest.kind).unwrap();
-            assert!(rest.probability >= params.min_probability && rest.probability <= *last / 0.9, "{rest:?}");
+            assert!(
+                rest.probability >= params.min_probability && rest.probability <= *last / 0.9,
+                "{rest:?}"
+            );
             *last = rest.probability;
             let inverse = pose.pose.inverse();
             let distance = |p: &Point| object.surface().signed_distance(&(inverse * p));
@@ -603,14 +611,18 @@ fn a_work_limit_gives_what_has_come_to_rest_so_far() {
     scene.analyse(&params, &Monitor::new(), |object, supporter| {
         let mut memory = vec![0; predict_bytes(&scene.limits(&params))];
         let mut slots = [HangingPose::default(); 50];
-        let full = super::predict(object, supporter, &request, &params, &mut slots, &mut memory, &Monitor::new()).unwrap();
+        let full =
+            super::predict(object, supporter, &request, &params, &mut slots, &mut memory, &Monitor::new())
+                .unwrap();
         assert_eq!(full.stopped, None);
         assert!(full.poses.len() > 1, "{:?}", full.counts);
         let mut partial = 0;
         for tenths in [1, 5, 8, 9] {
             let monitor = Monitor::with_work_limit(full.work.distance_queries * tenths / 10);
             let mut slots = [HangingPose::default(); 50];
-            let part = super::predict(object, supporter, &request, &params, &mut slots, &mut memory, &monitor).unwrap();
+            let part =
+                super::predict(object, supporter, &request, &params, &mut slots, &mut memory, &monitor)
+                    .unwrap();
             assert_eq!((part.stopped, part.rejection), (Some(Stop::WorkLimit), None));
             assert!(part.poses.iter().all(|pose| full.poses.contains(pose)));
             partial += usize::from(!part.poses.is_empty() && part.poses.len() < full.poses.len());
@@ -618,7 +630,8 @@ fn a_work_limit_gives_what_has_come_to_rest_so_far() {
         assert!(partial > 0, "some limit leaves some of them");
         let monitor = Monitor::new();
         monitor.cancel();
-        let cancelled = super::predict(object, supporter, &request, &params, &mut slots, &mut memory, &monitor).unwrap();
+        let cancelled =
+            super::predict(object, supporter, &request, &params, &mut slots, &mut memory, &monitor).unwrap();
         assert_eq!((cancelled.stopped, cancelled.poses.len()), (Some(Stop::Cancelled), 0));
     });
 }

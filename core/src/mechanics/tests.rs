@@ -150,6 +150,15 @@ impl Lab<'_> {
         carrying_contacts(scene, rest, &DOWN, &params, &mut self.sleeps, &mut meter).unwrap().to_vec()
     }
 
+    /// How the body hangs where it comes to rest after a release.
+    #[track_caller]
+    fn kind(&mut self, release: &Pose) -> Kind {
+        let rest = self.rest(release, FRICTION);
+        let contacts = self.contacts(&rest);
+        let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
+        kind_of(scene, &rest, &contacts, &-DOWN, &mut Meter::new(&monitor)).unwrap()
+    }
+
     fn margin(&mut self, rest: &Pose) -> Margin {
         let contacts = self.contacts(rest);
         let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
@@ -877,5 +886,78 @@ fn what_is_in_the_shadow_of_all_cameras_is_not_seen() {
         assert_eq!(shadow(&[], 0.0), Unseen::default());
         assert_eq!(shadow(&[beside], 0.75), Unseen { object: 0.75, shadow: 1.0, ..Unseen::default() });
         assert_eq!(shadow(&[beside, above], 0.5).shadow, 0.0);
+    });
+}
+
+/// A round wire bent to an open ring of [`RING`] around z, with a gap of this width, metres, around +y.
+fn open_ring(gap: f32) -> Shape {
+    let [ring, wire] = RING;
+    let (length, rows) = (core::f32::consts::TAU * ring - gap, 60);
+    let along = |row: u32| length * (rows - row) as f32 / rows as f32;
+    let mut profile = std::vec![[0.0, length]];
+    profile.extend((0..=rows).map(|row| [wire, along(row)]));
+    profile.push([0.0, 0.0]);
+    test_shapes::revolved(&profile, 24).map(|p| {
+        let (sin, cos) = ((p.z + 0.5 * gap) / ring).sin_cos();
+        Point::new((ring + p.x) * sin, (ring + p.x) * cos, p.y)
+    })
+}
+
+#[test]
+fn a_ring_on_a_rod_is_threaded_however_askew_it_hangs() {
+    for degrees in [0.0, 12.0, 25.0, 40.0, 55.0] {
+        let along = turned(Vector::z(), degrees) * Vector::x();
+        Scene::new(ring(), rod(along, 0.2, 0.003)).try_out(|lab| {
+            assert_eq!(lab.kind(&(at(0.0, 0.0, 0.002) * on_rod())), Kind::Threaded, "{degrees} degrees");
+        });
+    }
+}
+
+#[test]
+fn a_ring_with_a_gap_for_the_rod_is_hooked_and_one_with_a_slit_is_threaded() {
+    // The gap is below and aside, where the ring does not slip off.
+    let release = at(0.0, 0.0, 0.001) * on_rod() * turned(Vector::z(), 60.0);
+    let turns = [(0.014, Kind::Hooked), (0.02, Kind::Hooked), (0.001, Kind::Threaded)];
+    for (gap, kind) in turns {
+        Scene::new(open_ring(gap), rod(Vector::x(), 0.1, 0.004)).try_out(|lab| {
+            assert_eq!(lab.kind(&release), kind, "a gap of {gap} m");
+        });
+    }
+}
+
+#[test]
+fn a_cup_upside_down_over_a_tip_is_capped() {
+    let upright = test_shapes::peg(Point::new(0.0, 0.0, -0.2), Point::origin(), 0.006, 0.0012);
+    for (depth, radius) in [(0.09, 0.04), (0.05, 0.03), (0.03, 0.05)] {
+        // Walls of 3 mm, open below.
+        let profile = [
+            [0.0, 0.003],
+            [radius, 0.003],
+            [radius, -depth],
+            [radius - 0.003, -depth],
+            [radius - 0.003, 0.0],
+            [0.0, 0.0],
+        ];
+        let cup = test_shapes::revolved(&profile, 48);
+        Scene::new(cup, upright.clone()).try_out(|lab| {
+            assert_eq!(lab.kind(&at(0.0, 0.0, 0.001)), Kind::Capped, "{depth} m deep");
+        });
+    }
+}
+
+#[test]
+fn a_head_between_two_prongs_is_hooked_and_a_board_on_them_is_balanced() {
+    let prong = |y: f32| test_shapes::peg(Point::new(-0.05, y, 0.0), Point::new(0.05, y, 0.0), 0.003, 0.0012);
+    let prongs = together([prong(-0.008), prong(0.008)]);
+    // A head of 10 mm radius on a stem of 3 mm radius.
+    let mut profile: Vec<[f32; 2]> =
+        (0..=10).map(|k| (0.16 * k as f32 * 1.65).sin_cos()).map(|(s, c)| [0.01 * s, 0.01 * c]).collect();
+    profile.extend([[0.003, -0.0096], [0.003, -0.08], [0.0, -0.08]]);
+    Scene::new(test_shapes::revolved(&profile, 32), prongs.clone()).try_out(|lab| {
+        assert_eq!(lab.kind(&at(0.0, 0.0, 0.009)), Kind::Hooked);
+    });
+    let board = test_shapes::prism(0.06, &[[-0.03, 0.0], [0.03, 0.0], [0.03, 0.005], [-0.03, 0.005]]);
+    Scene::new(board, prongs).try_out(|lab| {
+        assert_eq!(lab.kind(&at(0.0, 0.0, 0.004)), Kind::Balanced);
     });
 }
