@@ -12,10 +12,12 @@ from sklearn.linear_model import LogisticRegression
 MOST_CLEARANCE_MM = 1.0
 LEAST_SINKING_MM = 8.0
 MOST_SINKING_MM = 10.0
+MOST_ESCAPE_RATIO = 2.0
 
 
 def poses(path):
-    """Yields for each pose: features, whether it hangs, whether it is robust, predicted probability, and pair."""
+    """Yields for each pose: features of hanging and of robustness, whether it hangs, whether it is robust, predicted
+    probability, and pair."""
     with open(path) as file:
         rows = [json.loads(line) for line in file]
     for row in rows:
@@ -28,7 +30,13 @@ def poses(path):
                 min(said["clearance"] * 1000.0, MOST_CLEARANCE_MM),
                 min(max(said["tilted_sinking"] * 1000.0 - LEAST_SINKING_MM, 0.0), MOST_SINKING_MM),
             ]
-            yield features, hangs, hangs and outcome["robust"], said["probability"], row["pair"]
+            robust_features = [
+                said["jolt_time"],
+                sum(said["tilts"]) / len(said["tilts"]),
+                min(said["escape_ratio"], MOST_ESCAPE_RATIO),
+            ]
+            robust = hangs and outcome["robust"]
+            yield features, robust_features, hangs, robust, said["probability"], row["pair"]
 
 
 def fit(name, features, outcomes):
@@ -40,10 +48,11 @@ def fit(name, features, outcomes):
 
 
 def main():
-    features, hangs, robust, said, pairs = (np.array(column) for column in zip(*poses(sys.argv[1])))
+    features, robust_features, hangs, robust, said, pairs = (np.array(column) for column in zip(*poses(sys.argv[1])))
     print("constant, per second, per radian, per mm of clearance, per mm of sinking")
     fitted = fit("hangs", features, hangs)
-    fitted_to_robust = fit("robust", features, robust)
+    print("constant, per second, per radian of mean tilt, per unit of escape ratio")
+    fitted_to_robust = fit("robust", robust_features, robust)
     for name, probability in [("as it is", said), ("fitted", fitted)]:
         print(f"Brier score, {name}: {np.mean((probability - hangs) ** 2):.4f}")
     for name, probability in [("as it is", said), ("fitted", fitted), ("fitted to robust", fitted_to_robust)]:

@@ -12,12 +12,13 @@ const MIDDLE: [f32; 3] = [0.3, -0.2, 0.5];
 
 /// The poses of a ring on a peg, or the stage that left none.
 fn predict_as(request: &Request) -> Result<Vec<HangingPose>, Stage> {
+    let params = Params { settle_attempts: 24, ..product() };
     let mut found = Ok(Vec::new());
-    Scene::ring_on_peg(0.0).analyse(&product(), &Monitor::new(), |object, supporter| {
+    Scene::ring_on_peg(0.0).analyse(&params, &Monitor::new(), |object, supporter| {
         let mut poses = [HangingPose::default(); 10];
         let memory = &mut vec![0; predict_bytes(&supporter.limits())];
         let prediction =
-            predict(object, supporter, request, &product(), &mut poses, memory, &Monitor::new()).unwrap();
+            predict(object, supporter, request, &params, &mut poses, memory, &Monitor::new()).unwrap();
         found = prediction.rejection.map_or(Ok(prediction.poses.to_vec()), |rejection| Err(rejection.stage));
     });
     found

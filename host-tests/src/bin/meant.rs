@@ -1,22 +1,22 @@
 //! Measures whether the best poses are the same in turned frames, whether their tolerances hold, and whether their
 //! probabilities are right. Deterministic for a seed.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::{Parser, Subcommand};
 use hangpose::geometry::{Cloud, Mesh, Point, Pose, Vector};
 use hangpose::hanging::{HangingPose, Request, Rest, predict_bytes, predict_many};
-use hangpose::mechanics::{Contact, Kind};
+use hangpose::mechanics::{Contact, Kind, Kinds};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, sample_supporter};
 use host_tests::judge::{Bullet, Judge, Scene};
-use host_tests::predicted;
 use host_tests::shapes::{Bar, Joint, OBJECTS, Random, SUPPORTERS, meant};
 use host_tests::tables::case::{Case, Fit, made};
 use host_tests::tables::proportion::wilson;
 use host_tests::tables::real::real;
 use host_tests::tables::search::finds_a_pose;
+use host_tests::{gallery, predicted};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use std::f64::consts::TAU;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -43,6 +43,12 @@ enum Measure {
     Turned,
     /// Share of best poses that still hang when they are let go as far off as they tolerate.
     Tolerance,
+    /// Draw an example of each kind.
+    Pictures {
+        /// Folder for the pictures.
+        #[arg(long, value_name = "DIR", default_value = "docs/kinds")]
+        out: PathBuf,
+    },
     /// Share of the pegs of generated mug trees that are filled when as many mugs as pegs are hung at once.
     Many,
     /// Whether poses hang as often as their probabilities say.
@@ -76,6 +82,7 @@ fn main() -> Result<()> {
             cases.truncate(pairs);
             turned(&cases, threads);
         }
+        Measure::Pictures { out } => pictures(&fitting(EXAMPLES, seed), &out)?,
         Measure::Many => many(pairs, seed, threads),
         Measure::Tolerance => tolerance(&fitting(pairs, seed), threads),
         Measure::Probability { meshes, real_pairs } => {
@@ -323,47 +330,40 @@ fn off(case: &Case) -> Option<Off> {
 
 /// Number of poses per pair whose probabilities are judged.
 const ALL_POSES: usize = 10;
-/// Number of bins of probability.
+/// Number of bins with equally many poses.
 const DECILES: usize = 10;
 
 /// A predicted pose and what became of it.
 struct Told {
-    probability: f32,
+    /// Probability that it hangs, and that it is robust.
+    said: [f32; 2],
     /// Whether it hangs, and whether it hangs robustly.
     came: [bool; 2],
 }
 
-/// Prints how often poses of pairs that fit hang, by their probabilities. A pair of real meshes fits if one of its poses
-/// hangs or a random search finds one that does.
+/// Prints how often poses of pairs that fit hang and are robust, by what is said of them. A pair of real meshes fits if one of
+/// its poses hangs or a random search finds one that does.
 fn probability(cases: &[Case], threads: usize) {
     let told: Vec<Told> = each(cases, threads, tell).into_iter().flatten().collect();
-    println!("{} poses\n", told.len());
-    println!("| said, % | poses | said mean, % | hang, % | robust, % |\n|---|--:|--:|--:|--:|");
-    for decile in 0..DECILES {
-        let is_in = |told: &&Told| ((told.probability * DECILES as f32) as usize).min(DECILES - 1) == decile;
-        let bin: Vec<&Told> = told.iter().filter(is_in).collect();
-        if bin.is_empty() {
-            continue;
+    println!("{} poses", told.len());
+    for (which, name) in [(0, "hang"), (1, "robust")] {
+        println!("\n| said, % | poses | said mean, % | {name}, % |\n|---|--:|--:|--:|");
+        let mut sorted: Vec<&Told> = told.iter().collect();
+        sorted.sort_by(|a, b| a.said[which].total_cmp(&b.said[which]));
+        for bin in sorted.chunks(told.len().div_ceil(DECILES)) {
+            let percent = |told: &Told| 100.0 * told.said[which];
+            let mean = bin.iter().map(|told| percent(told)).sum::<f32>() / bin.len() as f32;
+            let came = bin.iter().filter(|told| told.came[which]).count();
+            let (least, most) = (percent(bin[0]), percent(bin[bin.len() - 1]));
+            println!("| {least:.0} to {most:.0} | {} | {mean:.0} | {} |", bin.len(), wilson(came, bin.len()));
         }
-        let mean = 100.0 * bin.iter().map(|told| told.probability).sum::<f32>() / bin.len() as f32;
-        println!(
-            "| {} to {} | {} | {mean:.0} | {} | {} |",
-            10 * decile,
-            10 * (decile + 1),
-            bin.len(),
-            wilson(bin.iter().filter(|told| told.came[0]).count(), bin.len()),
-            wilson(bin.iter().filter(|told| told.came[1]).count(), bin.len())
-        );
-    }
-    println!();
-    for (which, name) in [(0, "hangs"), (1, "robust")] {
         let all = told.len() as f64;
         let base = told.iter().filter(|told| told.came[which]).count() as f64 / all;
         let error =
-            |told: &Told| (f64::from(told.probability) - f64::from(u8::from(told.came[which]))).powi(2);
+            |told: &Told| (f64::from(told.said[which]) - f64::from(u8::from(told.came[which]))).powi(2);
         let brier = told.iter().map(error).sum::<f64>() / all;
         println!(
-            "{name}: base rate {:.1} %, Brier score {brier:.4}, Brier skill {:.3}, area under the ROC curve {:.3}",
+            "\n{name}: base rate {:.1} %, Brier score {brier:.4}, Brier skill {:.3}, area under the ROC curve {:.3}",
             100.0 * base,
             1.0 - brier / (base * (1.0 - base)),
             roc_area(&told, which)
@@ -375,7 +375,7 @@ fn probability(cases: &[Case], threads: usize) {
 /// equal probabilities count half.
 fn roc_area(told: &[Told], which: usize) -> f64 {
     let of = |wanted: bool| {
-        told.iter().filter(move |told| told.came[which] == wanted).map(|told| told.probability)
+        told.iter().filter(move |told| told.came[which] == wanted).map(|told| told.said[which])
     };
     let wins: f64 = of(true)
         .flat_map(|yes| {
@@ -394,7 +394,10 @@ fn tell(case: &Case) -> Vec<Told> {
         .filter_map(|pose| {
             let verdict = world.judge(&scene, &pose.pose);
             let hangs = verdict.success();
-            Some(Told { probability: pose.rest?.probability, came: [hangs, hangs && verdict.robust] })
+            Some(Told {
+                said: [pose.rest?.probability, pose.rest?.robustness],
+                came: [hangs, hangs && verdict.robust],
+            })
         })
         .collect();
     let fits = case.fit == Fit::Yes
@@ -402,6 +405,36 @@ fn tell(case: &Case) -> Vec<Told> {
             && (told.iter().any(|told| told.came[0])
                 || finds_a_pose(&case.object, &case.supporter, case.seed));
     if fits { told } else { Vec::new() }
+}
+
+/// Generated pairs among which examples of the kinds are looked for.
+const EXAMPLES: usize = 400;
+
+/// Draws the most probable pose of each kind of an object that shows it well, at release and at rest.
+fn pictures(cases: &[Case], folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder)?;
+    let examples = [
+        (Kind::Threaded, "mug", "mug tree"),
+        (Kind::Hooked, "clothes hanger", "rod"),
+        (Kind::Capped, "cap", "tilted peg"),
+        (Kind::Balanced, "utensil", "J hook"),
+    ];
+    for (kind, object, supporter) in examples {
+        let is_wanted = |case: &&Case| case.object_kind == object && case.supporter_kind == supporter;
+        let request = Request { allow: Kinds::of(&[kind]), ..Request::ANY };
+        let found = cases.iter().filter(is_wanted).find_map(|case| {
+            let cloud = case.supporter_cloud();
+            let cloud = cloud.cloud().expect("samples are valid");
+            let poses = predicted(&case.object.mesh(), &cloud, &request, &params(case), 1);
+            poses.first().and_then(|pose| Some((case, pose.pose, pose.rest?.pose)))
+        });
+        let (case, release, rest) =
+            found.with_context(|| format!("no {object} is {kind} on a {supporter}"))?;
+        let path = folder.join(format!("{kind}.png"));
+        gallery::write(&path, &case.object, &case.supporter, &release, &rest)?;
+        println!("{}: {}", path.display(), case.name);
+    }
+    Ok(())
 }
 
 /// Number of points that a tree is sampled to.

@@ -81,6 +81,8 @@ pub struct Said {
     pub tolerance: [f32; 2],
     /// Probability that the object hangs.
     pub probability: f32,
+    /// Probability that it is robust.
+    pub robustness: f32,
     /// Tolerated tilt in each direction, rad.
     pub tilts: [f32; 8],
     /// Duration for which it survives the jolt test, s.
@@ -109,6 +111,7 @@ impl From<&Rest> for Said {
             kind: rest.kind,
             tolerance: [rest.tolerance.position, rest.tolerance.rotation],
             probability: rest.probability,
+            robustness: rest.robustness,
             tilts: rest.margin.tilts,
             jolt_time: rest.margin.jolt_time,
             tilted_sinking: rest.margin.tilted_sinking,

@@ -1,6 +1,6 @@
 //! The probability that a pose hangs. `docs/PROBABILITY.md` says where the constants come from.
 
-use crate::mechanics::{Margin, Unseen};
+use crate::mechanics::{DIRECTIONS, Margin, Unseen};
 
 // A logistic regression of success, as the judge in `host-tests` defines it, on the margins of a rest pose. Fitted on
 // the poses of seeds 7 and 100; `make calibrate` prints a new fit of seed 100 beside these values.
@@ -22,6 +22,20 @@ const MAX_SINKING: f32 = 0.01;
 const PER_CLEARANCE: f32 = 6690.0;
 /// Clearance that counts at most, metres: the share that hangs does not grow beyond it.
 const MAX_CLEARANCE: f32 = 0.001;
+
+// A logistic regression of robustness, which the judge tests as well. Fitted on all poses of the pairs of seed 100 that fit;
+// `make calibrate` prints a new fit.
+
+/// Intercept of the score of robustness.
+const ROBUST_INTERCEPT: f32 = -7.12;
+/// Score of robustness for each second of the jolt test that the pose survives, 1/s.
+const ROBUST_PER_JOLT: f32 = 3.28;
+/// Score of robustness for each radian of the mean tilt, 1/rad.
+const ROBUST_PER_TILT: f32 = 3.99;
+/// Score of robustness for each unit of the escape ratio, up to [`MAX_ESCAPE_RATIO`]; no unit.
+const ROBUST_PER_ESCAPE: f32 = 5.94;
+/// Escape ratio that counts at most: who has to lift the centre of mass by twice the lever does not come off by a knock.
+const MAX_ESCAPE_RATIO: f32 = 2.0;
 
 /// Probability from which a pose is firm: [`Params::firm_enough`](crate::Params::firm_enough) such releases end the
 /// search.
@@ -71,10 +85,19 @@ pub(super) fn of(margin: &Margin, clearance: f32, unseen: &Unseen) -> f32 {
     share_that_is_right(unseen) / (1.0 + libm::expf(-score))
 }
 
+/// The probability that a pose with this margin also stays when gravity tilts by [`Margin::JOLT`].
+pub(super) fn of_robust(margin: &Margin, unseen: &Unseen) -> f32 {
+    let mean_tilt = margin.tilts.iter().sum::<f32>() / DIRECTIONS as f32;
+    let score = ROBUST_INTERCEPT
+        + ROBUST_PER_JOLT * margin.jolt_time
+        + ROBUST_PER_TILT * mean_tilt
+        + ROBUST_PER_ESCAPE * margin.escape_ratio.min(MAX_ESCAPE_RATIO);
+    share_that_is_right(unseen) / (1.0 + libm::expf(-score))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanics::DIRECTIONS;
 
     #[test]
     fn the_least_tilt_is_the_one_with_that_probability() {

@@ -32,6 +32,9 @@ pub struct Rest {
     pub tolerance: Tolerance,
     /// The probability that the object hangs and stays, 0 to 1.
     pub probability: f32,
+    /// The probability that it also stays when gravity tilts by 21.8 degrees towards any side, 0 to 1: what a robot that moves the
+    /// supporter needs. Among poses that are sure to hang it tells which is the firmest.
+    pub robustness: f32,
     /// How much of what matters at the release pose no camera has seen. The probability is lower by it.
     pub unseen: Unseen,
     /// How firmly the object stays.
@@ -53,6 +56,7 @@ impl Rest {
         let mut contacts = [Contact::default(); MAX_CONTACTS];
         contacts[..bearing.len()].copy_from_slice(bearing);
         let probability = probability::of(&margin, clearance, &unseen);
+        let robustness = probability::of_robust(&margin, &unseen);
         let contact_count = bearing.len() as u32;
         Self {
             pose,
@@ -61,6 +65,7 @@ impl Rest {
             clearance,
             tolerance,
             probability,
+            robustness,
             unseen,
             margin,
             contacts,
