@@ -1,5 +1,5 @@
-// Hangs mugs on a mug tree, one after the other: the first where it is asked for, all of them away from a
-// wall and from each other, until none fits: ./09_requests mug.obj mug_tree.obj
+// Hangs mugs on a mug tree, away from a wall: one where it is asked for, then three more at once beside it:
+// ./09_requests mug.obj mug_tree.obj
 #include <cstdio>
 #include <hangpose.hpp>
 #include <vector>
@@ -20,6 +20,13 @@ static std::vector<hangpose::vec3> wall() {
   return points;
 }
 
+static void print(std::size_t number, const hangpose::pose &pose) {
+  const auto &p = pose.position;
+  std::printf("mug %zu: release at (%.4f, %.4f, %.4f) m, %s with probability %.2f; may be off by %.1f mm\n",
+              number, p[0], p[1], p[2], hangpose_kind_string(pose.kind), pose.probability,
+              1000 * pose.tolerance_position);
+}
+
 int main(int count, char **arguments) {
   if (count != 3) {
     std::fprintf(stderr, "usage: %s object.obj supporter.obj\n", arguments[0]);
@@ -35,29 +42,37 @@ int main(int count, char **arguments) {
   const auto tree = hangpose::supporter::create({points, normals}, params);
   if (!tree) return fail(tree.error());
 
-  // What hangs and stands around must outlive the request, which points to it.
+  // What stands around and hangs already must outlive the request, which points to it.
   const std::vector<hangpose::vec3> scene = wall(), here{{0.06f, 0.0f, 0.165f}};
-  std::vector<hangpose::hung> hanging;
   hangpose::request request;
   request.avoid(scene);
   request.allow = HANGPOSE_KIND_THREADED | HANGPOSE_KIND_HOOKED;
+
+  // One mug on the peg that is asked for.
   request.on = hangpose::region::around(here, 0.03f);
-  for (;;) {
-    hangpose::pose best[1];
-    const auto found = hangpose::predict(*mug, *tree, request, params, best);
-    if (!found) return fail(found.error());
-    if (found->status == HANGPOSE_REJECTED) {
-      std::printf("no more: %s\n", found->reason());
-      break;
-    }
-    const auto &p = best[0].position;
-    std::printf("mug %zu: release at (%.4f, %.4f, %.4f) m, %s with probability %.2f; may be off by %.1f mm\n",
-                hanging.size() + 1, p[0], p[1], p[2], hangpose_kind_string(best[0].kind), best[0].probability,
-                1000 * best[0].tolerance_position);
-    // The next mug may hang anywhere, but not in this one.
-    hanging.emplace_back(*mug, best[0]);
-    request.avoid(hanging);
-    request.on = hangpose::region();
+  hangpose::pose best[1];
+  const auto first = hangpose::predict(*mug, *tree, request, params, best);
+  if (!first) return fail(first.error());
+  if (first->status == HANGPOSE_REJECTED) {
+    std::printf("nothing hangs here: %s\n", first->reason());
+    return 3;
   }
-  return hanging.size() > 1 ? 0 : 3;
+  print(1, best[0]);
+
+  // Three more anywhere, all at once: clear of the first and of each other.
+  const std::vector<hangpose::hung> hanging{{*mug, best[0]}};
+  request.avoid(hanging);
+  request.on = hangpose::region();
+  const hangpose::object *const more[3] = {&*mug, &*mug, &*mug};
+  hangpose::pose poses[3];
+  const auto found = hangpose::predict_many(more, *tree, request, params, poses);
+  if (!found) return fail(found.error());
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (poses[i].has_pose) {
+      print(i + 2, poses[i]);
+    } else {
+      std::printf("mug %zu: no room: %s\n", i + 2, found->reason());
+    }
+  }
+  return found->placed > 0 ? 0 : 3;
 }

@@ -6,7 +6,8 @@
 // Use. (1) hangpose_params_init. (2) hangpose_object_create from a triangle mesh and hangpose_supporter_create from a
 // point cloud, once each. (3) hangpose_predict. poses[0] is the best: place the object at its `position` and
 // `quaternion` and release it. examples-c/01_static_memory.c is a complete program. A hangpose_request says how and
-// where the object shall hang and what it must not touch: examples-c/09_requests.cpp.
+// where the object shall hang and what it must not touch, and hangpose_predict_many hangs several objects at once:
+// examples-c/09_requests.cpp.
 //
 // From depth images. The mesh of an object that is held alone: hangpose_volume_room gives the crop box of a dense
 // volume; then hangpose_volume_create, hangpose_volume_integrate once for each image, hangpose_volume_complete and
@@ -64,7 +65,7 @@
   (HANGPOSE_SURFACE_BYTES_AT_LEAST + HANGPOSE_SURFACE_BYTES_EACH_BLOCK * (size_t)(blocks))
 // Terms of these macros: upper bounds of the growth of the queries per vertex, triangle, sample, voxel, point, pose and
 // block.
-#define HANGPOSE_OBJECT_BYTES_AT_LEAST 30720
+#define HANGPOSE_OBJECT_BYTES_AT_LEAST 31744
 #define HANGPOSE_OBJECT_BYTES_EACH_VERTEX 24
 #define HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE 180
 #define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 312
@@ -97,8 +98,8 @@
 // Value of `work_limit` for no limit.
 #define HANGPOSE_NO_WORK_LIMIT 18446744073709551615ull
 
-// Greatest number of objects that hang already, hangpose_request.hung_count. Of more, pass points of their surfaces as
-// hangpose_request.scene_points.
+// Greatest number of objects that hang already, hangpose_request.hung_count, and of objects that hang at once, those
+// of hangpose_predict_many included. Of more, pass points of their surfaces as hangpose_request.scene_points.
 #define HANGPOSE_MAX_HUNG 32
 
 // Number of directions in which gravity is tilted.
@@ -310,7 +311,7 @@ typedef struct hangpose_limits {
   uint32_t voxels;
   // Number of points of the supporter's cloud.
   uint32_t points;
-  // Value of `pose_capacity` for hangpose_predict.
+  // Value of `pose_capacity` for hangpose_predict, or of `object_count` for hangpose_predict_many.
   uint32_t poses;
 } hangpose_limits;
 
@@ -513,7 +514,7 @@ typedef struct hangpose_region {
 
 // An object that hangs already. Part of hangpose_request.
 typedef struct hangpose_hung {
-  // The object. It must have been analysed with voxels. The object that is to be hung may hang already, too.
+  // The object. The object that is to be hung may hang already, too.
   const struct hangpose_object *object;
   // Its pose: x, y, z of its origin, metres, in supporter coordinates, each within +-1,000,000.
   float position[3];
@@ -522,9 +523,9 @@ typedef struct hangpose_hung {
   float quaternion[4];
 } hangpose_hung;
 
-// What hangpose_predict looks for: how and where the object hangs, and what it must not touch. Set the struct with
-// hangpose_request_init, then change single fields. The library keeps no pointer to the arrays after the call. With
-// hangpose_params.settle = 0 only the regions count, and these only with HANGPOSE_CANDIDATES_CONTACTS.
+// What hangpose_predict and hangpose_predict_many look for: how and where the object hangs, and what it must not touch.
+// Set the struct with hangpose_request_init, then change single fields. The library keeps no pointer to the arrays after
+// the call. With hangpose_params.settle = 0 only the regions count, and these only with HANGPOSE_CANDIDATES_CONTACTS.
 typedef struct hangpose_request {
   // sizeof(hangpose_request), set by hangpose_request_init.
   uint32_t struct_size;
@@ -609,6 +610,9 @@ typedef struct hangpose_contact {
 typedef struct hangpose_pose {
   // sizeof(hangpose_pose), set by the library.
   uint32_t struct_size;
+  // 1 if there is a pose, as in all that hangpose_predict writes. 0 if hangpose_predict_many has none for the object:
+  // then all fields from here on are HANGPOSE_NO_INDEX, NaN or 0.
+  uint32_t has_pose;
   // Release pose: x, y, z of the origin of the object, metres, in supporter coordinates.
   float position[3];
   // Release pose: x, y, z, w of the unit quaternion that rotates object coordinates into supporter coordinates.
@@ -733,6 +737,24 @@ typedef struct hangpose_prediction {
   // Number of distance and inside-outside queries.
   uint64_t distance_queries;
 } hangpose_prediction;
+
+// Result of hangpose_predict_many beside the poses.
+typedef struct hangpose_many {
+  // sizeof(hangpose_many), set by the caller.
+  uint32_t struct_size;
+  // Number of objects that have a pose.
+  uint32_t placed;
+  // Why the first object without a pose has none, one of HANGPOSE_STAGE_*; hangpose_stage_string gives a text.
+  // HANGPOSE_STAGE_NONE if all have one, or if all for which HANGPOSE_MAX_HUNG leaves room have one.
+  hangpose_stage stage;
+  // HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT if this call or the analysis of one of its models ended early, else
+  // HANGPOSE_OK.
+  hangpose_status stopped;
+  // Number of rays cast.
+  uint64_t rays;
+  // Number of distance and inside-outside queries.
+  uint64_t distance_queries;
+} hangpose_many;
 
 // Resolution and extent of a volume, and how far its completion may go. Set the struct with
 // hangpose_volume_settings_init, then change single fields.
@@ -1042,9 +1064,9 @@ size_t hangpose_object_bytes(const struct hangpose_limits *limits);
 // around.
 size_t hangpose_supporter_bytes(const struct hangpose_limits *limits);
 
-// Returns the bytes of working memory for hangpose_predict with any object and supporter within `limits`; depends
-// on points and poses. Returns 0 if `limits` is null or its struct_size is wrong. For limits beyond any memory the
-// result is larger than any memory; it does not wrap around.
+// Returns the bytes of working memory for hangpose_predict or hangpose_predict_many with any object and supporter
+// within `limits`; depends on points and poses. Returns 0 if `limits` is null or its struct_size is wrong. For limits
+// beyond any memory the result is larger than any memory; it does not wrap around.
 size_t hangpose_predict_bytes(const struct hangpose_limits *limits);
 
 // Initialises a monitor, or resets a used one for the next call: not cancelled, no progress. No call may be using
@@ -1183,6 +1205,33 @@ hangpose_status hangpose_predict(const struct hangpose_object *object,
                                  uint32_t pose_capacity,
                                  struct hangpose_prediction *prediction,
                                  struct hangpose_detail *detail);
+
+// Finds poses in which all of `objects` hang on `supporter` at once, each as `request` asks and clear of the others.
+//
+// `objects` is an array of `object_count` objects, 1 to HANGPOSE_MAX_HUNG; copies are the same pointer several times.
+// `poses` is an array of as many structs: poses[i] is for objects[i], and poses[i].has_pose is 0 if there is no room
+// for it. The first objects choose first. At most HANGPOSE_MAX_HUNG hang in the end, with those that hang already; the
+// objects beyond have no pose. The models must have been analysed with these `params`, of which `settle` must be 1.
+//
+// `memory` is working memory of at least hangpose_predict_bytes with limits.poses = object_count. A work limit of
+// `monitor` holds for each of the predictions of which the call consists: one for each object, and up to two for each
+// pair of them. Set many->struct_size before the call. Everything else is as for hangpose_predict.
+//
+// Returns HANGPOSE_OK if at least one object has a pose, and many->placed says how many; HANGPOSE_REJECTED if none has,
+// and many->stage gives the reason; HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT with the poses found so far, possibly
+// none; or an error.
+hangpose_status hangpose_predict_many(const struct hangpose_object *const *objects,
+                                      uint32_t object_count,
+                                      const struct hangpose_supporter *supporter,
+                                      const struct hangpose_request *request,
+                                      const struct hangpose_params *params,
+                                      void *memory,
+                                      size_t memory_size,
+                                      struct hangpose_monitor *monitor,
+                                      struct hangpose_pose *poses,
+                                      size_t pose_size,
+                                      struct hangpose_many *many,
+                                      struct hangpose_detail *detail);
 
 // Returns the bytes of working memory that hangpose_mesh_sample needs for `count` samples.
 size_t hangpose_sample_bytes(uint32_t count);

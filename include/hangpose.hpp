@@ -11,7 +11,7 @@
 //   auto found = hangpose::predict(*object, *supporter, params, poses);
 //
 // hangpose::request says how and where the object shall hang and what it must not touch.
-// examples-c/09_requests.cpp is a complete program.
+// hangpose::predict_many hangs several objects at once. examples-c/09_requests.cpp is a complete program.
 //
 // From depth images: hangpose::volume gives the mesh of an object, hangpose::depth_points the cloud of a
 // supporter. examples-c/07_depth_images.cpp is a complete program.
@@ -412,6 +412,23 @@ class prediction : public hangpose_prediction {
   const char *reason() const noexcept { return hangpose_stage_string(stage); }
 };
 
+namespace internal {
+
+// Working memory from the heap for a prediction of so many poses.
+inline result<memory> work_for(const supporter &supporter, const params &params, std::size_t poses) noexcept {
+  auto within = limits_of(params, nullptr, nullptr);
+  if (!within) return within.error();
+  const auto info = supporter.info();
+  if (!info) return info.error();
+  within->points = info->points;
+  within->poses = count(poses);
+  memory work = memory::own(hangpose_predict_bytes(&*within));
+  if (work.data() == nullptr) return no_memory();
+  return work;
+}
+
+}  // namespace internal
+
 // Finds poses in which the object hangs on the supporter as it was asked for and writes them to `poses`.
 // `work` is working memory of at least hangpose_predict_bytes or HANGPOSE_PREDICT_BYTES. Both models must
 // have been analysed with these params.
@@ -431,15 +448,9 @@ inline result<prediction> predict(const object &object, const supporter &support
 // The same with working memory from the heap.
 inline result<prediction> predict(const object &object, const supporter &supporter, const request &asked,
                                   const params &params, view<pose> poses, monitor *watch = nullptr) noexcept {
-  auto within = internal::limits_of(params, nullptr, nullptr);
-  if (!within) return within.error();
-  const auto info = supporter.info();
-  if (!info) return info.error();
-  within->points = info->points;
-  within->poses = internal::count(poses.size());
-  memory work = memory::own(hangpose_predict_bytes(&*within));
-  if (work.data() == nullptr) return internal::no_memory();
-  return predict(object, supporter, asked, params, poses, work, watch);
+  const auto work = internal::work_for(supporter, params, poses.size());
+  if (!work) return work.error();
+  return predict(object, supporter, asked, params, poses, *work, watch);
 }
 
 // The same for anything anywhere.
@@ -450,6 +461,48 @@ inline result<prediction> predict(const object &object, const supporter &support
 inline result<prediction> predict(const object &object, const supporter &supporter, const params &params,
                                   view<pose> poses, monitor *watch = nullptr) noexcept {
   return predict(object, supporter, request(), params, poses, watch);
+}
+
+// Result of predict_many: how many of the objects hang, or the reason why none does.
+class many : public hangpose_many {
+ public:
+  many() noexcept : hangpose_many() { struct_size = sizeof(hangpose_many); }
+  // HANGPOSE_OK, HANGPOSE_REJECTED, HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT.
+  hangpose_status status = HANGPOSE_OK;
+  // A text for people: why the first object without a pose has none.
+  const char *reason() const noexcept { return hangpose_stage_string(stage); }
+};
+
+// Finds poses in which all objects hang on the supporter at once, each as it was asked for: poses[i] is for
+// objects[i], whose has_pose is 0 if there is no room for it. The arrays have the same length, up to
+// HANGPOSE_MAX_HUNG; copies are the same pointer several times. `work` is as for predict with as many poses.
+inline result<many> predict_many(view<const object *const> objects, const supporter &supporter,
+                                 const request &asked, const params &params, view<pose> poses,
+                                 const memory &work, monitor *watch = nullptr) noexcept {
+  if (poses.size() != objects.size()) {
+    return error::of(HANGPOSE_ERROR_COUNT, "poses",
+                     "the number of poses differs from the number of objects: pass arrays of the same length");
+  }
+  const hangpose_object *handles[HANGPOSE_MAX_HUNG] = {};
+  for (std::size_t i = 0; i < objects.size() && i < HANGPOSE_MAX_HUNG; ++i) {
+    handles[i] = objects[i] == nullptr ? nullptr : objects[i]->get();
+  }
+  many found;
+  error why;
+  found.status = hangpose_predict_many(handles, internal::count(objects.size()), supporter.get(), &asked,
+                                       &params, work.data(), work.size(), internal::get(watch), poses.data(),
+                                       sizeof(pose), &found, why.out());
+  if (found.status < 0) return why;
+  return found;
+}
+
+// The same with working memory from the heap.
+inline result<many> predict_many(view<const object *const> objects, const supporter &supporter,
+                                 const request &asked, const params &params, view<pose> poses,
+                                 monitor *watch = nullptr) noexcept {
+  const auto work = internal::work_for(supporter, params, poses.size());
+  if (!work) return work.error();
+  return predict_many(objects, supporter, asked, params, poses, *work, watch);
 }
 
 // Fills `points` and `normals`, arrays of the same length, with evenly spread samples of a mesh: the cloud of

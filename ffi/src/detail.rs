@@ -84,7 +84,7 @@ impl Write for Writer<'_> {
 mod tests {
     extern crate std;
     use super::*;
-    use crate::failure::{Failure, HungFault};
+    use crate::failure::{Failure, HungFault, ObjectFault};
     use hangpose_core::ParamsError;
     use hangpose_core::geometry::{CloudError, MeshError};
     use hangpose_core::hanging::{RegionError, RequestError};
@@ -116,7 +116,9 @@ mod tests {
             ParamsError::CentreOfMass { point: worst }.into(),
             Failure::NoDistanceField,
             Failure::ManyHung { count: u32::MAX },
-            Failure::Hung { index: most, fault: HungFault::Handle },
+            Failure::Listed { index: most, fault: ObjectFault::Handle },
+            Failure::NotSettled,
+            Failure::Hung { index: most, fault: HungFault::Object(ObjectFault::Handle) },
             Failure::Hung { index: most, fault: HungFault::Position(worst) },
             Failure::Hung { index: most, fault: HungFault::Quaternion([worst[0]; 4]) },
             request(RequestError::NothingAllowed),

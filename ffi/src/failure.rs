@@ -32,16 +32,24 @@ pub(crate) enum Failure {
     Request { error: RequestError, spot: Spot },
     Hung { index: usize, fault: HungFault },
     ManyHung { count: u32 },
+    Listed { index: usize, fault: ObjectFault },
+    NotSettled,
     Cancelled,
 }
 
 /// What is wrong with an object that hangs already.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum HungFault {
-    Null,
-    Handle,
+    Object(ObjectFault),
     Position([f32; 3]),
     Quaternion([f32; 4]),
+}
+
+/// What is wrong with an object of an array.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum ObjectFault {
+    Null,
+    Handle,
 }
 
 /// Location of a failure: the field with its prefix, the index of the element, the value and its range.
@@ -86,13 +94,17 @@ pub(crate) trait Reason: Display {
 impl Reason for Failure {
     fn status(&self) -> hangpose_status {
         match self {
-            Self::Null { .. } | Self::Hung { fault: HungFault::Null, .. } => HANGPOSE_ERROR_NULL,
+            Self::Null { .. }
+            | Self::Listed { fault: ObjectFault::Null, .. }
+            | Self::Hung { fault: HungFault::Object(ObjectFault::Null), .. } => HANGPOSE_ERROR_NULL,
             Self::Misaligned { .. } => HANGPOSE_ERROR_MISALIGNED,
             Self::StructSize { .. } => HANGPOSE_ERROR_STRUCT_SIZE,
             Self::Version { .. } => HANGPOSE_ERROR_ABI_VERSION,
             Self::Memory { .. } => HANGPOSE_ERROR_MEMORY,
             Self::Overlap { .. } => HANGPOSE_ERROR_OVERLAP,
-            Self::Handle { .. } | Self::Hung { fault: HungFault::Handle, .. } => HANGPOSE_ERROR_HANDLE,
+            Self::Handle { .. }
+            | Self::Listed { fault: ObjectFault::Handle, .. }
+            | Self::Hung { fault: HungFault::Object(ObjectFault::Handle), .. } => HANGPOSE_ERROR_HANDLE,
             Self::Busy { .. } => HANGPOSE_ERROR_BUSY,
             Self::Empty { .. } => HANGPOSE_ERROR_EMPTY,
             Self::Count { .. }
@@ -110,6 +122,7 @@ impl Reason for Failure {
                 ..
             } => HANGPOSE_ERROR_INDEX,
             Self::Choice { .. }
+            | Self::NotSettled
             | Self::Params(_)
             | Self::Request { .. }
             | Self::Hung { fault: HungFault::Position(_) | HungFault::Quaternion(_), .. }
@@ -165,6 +178,8 @@ impl Reason for Failure {
                 let range = [0.0, crate::HANGPOSE_MAX_HUNG as f64];
                 Place::of("request.hung_count").value(f64::from(count)).range(range)
             }
+            Self::Listed { index, .. } => Place { index: Some(index), ..Place::of("objects") },
+            Self::NotSettled => Place::of("params.settle").value(0.0).range([1.0; 2]),
             Self::Cancelled => Place::default(),
         }
     }
@@ -251,7 +266,7 @@ fn cloud_place(error: CloudError) -> Place {
 fn hung_place(index: usize, fault: HungFault) -> Place {
     let at = |field| Place { index: Some(index), ..Place::of(field) };
     match fault {
-        HungFault::Null | HungFault::Handle => at("request.hung.object"),
+        HungFault::Object(_) => at("request.hung.object"),
         HungFault::Position(position) => Place::of("request.hung.position").coordinate(Some(index), position),
         HungFault::Quaternion(_) => at("request.hung.quaternion"),
     }
@@ -320,10 +335,7 @@ impl Display for Failure {
             Self::Hung { index, fault } => {
                 write!(f, "object {index} of those that hang already ")?;
                 match fault {
-                    HungFault::Null => f.write_str("is null: pass an object of hangpose_object_create"),
-                    HungFault::Handle => f.write_str(
-                        "was never created by hangpose_object_create, or was moved or overwritten: create it and keep it in place",
-                    ),
+                    HungFault::Object(fault) => f.write_str(fault.text()),
                     HungFault::Position(position) => write!(
                         f,
                         "is at {position:?}: every coordinate must be a number of metres within ±{MAX_COORDINATE}"
@@ -339,7 +351,30 @@ impl Display for Failure {
                 "request.hung_count is {count}, but must be 0 to {}: pass points of the surfaces of the others as request.scene_points",
                 crate::HANGPOSE_MAX_HUNG
             ),
+            Self::Listed { index, fault } => write!(f, "objects[{index}] {}", fault.text()),
+            Self::NotSettled => f.write_str(
+                "params.settle is 0, and without a release nothing keeps the objects apart: analyse the models with settle = 1, and pass those params",
+            ),
             Self::Cancelled => f.write_str("cancelled"),
+        }
+    }
+}
+
+impl ObjectFault {
+    /// Why an object cannot be shared.
+    pub(crate) fn of(failure: &Failure) -> Self {
+        match failure {
+            Failure::Null { .. } => Self::Null,
+            _ => Self::Handle,
+        }
+    }
+
+    fn text(self) -> &'static str {
+        match self {
+            Self::Null => "is null: pass an object of hangpose_object_create",
+            Self::Handle => {
+                "was never created by hangpose_object_create, or was moved or overwritten: create it and keep it in place"
+            }
         }
     }
 }

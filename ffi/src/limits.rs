@@ -27,7 +27,7 @@ pub struct hangpose_limits {
     pub voxels: u32,
     /// Number of points of the supporter's cloud.
     pub points: u32,
-    /// Value of `pose_capacity` for hangpose_predict.
+    /// Value of `pose_capacity` for hangpose_predict, or of `object_count` for hangpose_predict_many.
     pub poses: u32,
 }
 
@@ -107,9 +107,9 @@ pub unsafe extern "C" fn hangpose_supporter_bytes(limits: *const hangpose_limits
     }
 }
 
-/// Returns the bytes of working memory for hangpose_predict with any object and supporter within `limits`; depends
-/// on points and poses. Returns 0 if `limits` is null or its struct_size is wrong. For limits beyond any memory the
-/// result is larger than any memory; it does not wrap around.
+/// Returns the bytes of working memory for hangpose_predict or hangpose_predict_many with any object and supporter
+/// within `limits`; depends on points and poses. Returns 0 if `limits` is null or its struct_size is wrong. For limits
+/// beyond any memory the result is larger than any memory; it does not wrap around.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_predict_bytes(limits: *const hangpose_limits) -> usize {
     // SAFETY: the caller vouches for the pointer.

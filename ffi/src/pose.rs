@@ -61,6 +61,9 @@ pub struct hangpose_margin {
 pub struct hangpose_pose {
     /// sizeof(hangpose_pose), set by the library.
     pub struct_size: u32,
+    /// 1 if there is a pose, as in all that hangpose_predict writes. 0 if hangpose_predict_many has none for the object:
+    /// then all fields from here on are HANGPOSE_NO_INDEX, NaN or 0.
+    pub has_pose: u32,
     /// Release pose: x, y, z of the origin of the object, metres, in supporter coordinates.
     pub position: [f32; 3],
     /// Release pose: x, y, z, w of the unit quaternion that rotates object coordinates into supporter coordinates.
@@ -139,10 +142,10 @@ pub(crate) fn pose_of(position: [f32; 3], [x, y, z, w]: [f32; 4]) -> Option<Pose
 impl From<&HangingPose> for hangpose_pose {
     fn from(pose: &HangingPose) -> Self {
         let mut answer = Self {
-            struct_size: size_of::<Self>() as u32,
+            has_pose: 1,
             position: pose.pose.translation.vector.into(),
             quaternion: pose.pose.rotation.coords.into(),
-            ..Self::NEITHER
+            ..Self::NONE
         };
         if let Some(rest) = &pose.rest {
             answer.has_rest = 1;
@@ -185,11 +188,12 @@ impl From<&HangingPose> for hangpose_pose {
 }
 
 impl hangpose_pose {
-    /// A pose without rest and without match.
-    const NEITHER: Self = {
+    /// No pose, and so without rest and without match.
+    pub(crate) const NONE: Self = {
         const NAN: f32 = f32::NAN;
         Self {
-            struct_size: 0,
+            struct_size: size_of::<Self>() as u32,
+            has_pose: 0,
             position: [NAN; 3],
             quaternion: [NAN; 4],
             has_rest: 0,

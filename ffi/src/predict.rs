@@ -89,6 +89,9 @@ unsafe impl Public for hangpose_pose {
     const NAME: &'static str = "poses";
 }
 
+// The memory for a number of poses holds as many that may be missing.
+const _: () = assert!(size_of::<Option<HangingPose>>() == size_of::<HangingPose>());
+
 /// Bytes for `count` poses of the core in memory that begins at any address.
 pub(crate) fn pose_bytes(count: u32) -> usize {
     size_of::<HangingPose>().saturating_mul(count as usize).saturating_add(align_of::<HangingPose>() - 1)
@@ -167,6 +170,9 @@ pub unsafe extern "C" fn hangpose_predict(
             )
         };
         check("poses", poses.cast_const())?;
+        if pose_capacity == 0 {
+            return Err(Failure::Count { field: "pose_capacity", count: 0, most: u32::MAX as usize });
+        }
         let hung = hung.list();
         // SAFETY: the caller vouches for the arrays, which are apart from what is written.
         let request = unsafe { request.check(&hung) }?;
@@ -190,25 +196,24 @@ pub unsafe extern "C" fn hangpose_predict(
 }
 
 /// Splits `memory` into `count` poses of the core, whose layout is not that of C, and the rest, of at least
-/// `others` bytes.
-fn pose_slots(
+/// `others` bytes. `P` is a [`HangingPose`] or one that may be missing.
+pub(crate) fn pose_slots<P: Copy + Default>(
     memory: &mut [u8],
     count: u32,
     others: usize,
-) -> Result<(&mut [HangingPose], &mut [u8]), Failure> {
-    if count == 0 {
-        return Err(Failure::Count { field: "pose_capacity", count: 0, most: u32::MAX as usize });
-    }
+) -> Result<(&mut [P], &mut [u8]), Failure> {
+    const { assert!(size_of::<P>() == size_of::<HangingPose>()) };
+    const { assert!(align_of::<P>() == align_of::<HangingPose>()) };
     let (needed, given) = (pose_bytes(count).saturating_add(others), memory.len());
     if given < needed {
         return Err(Failure::Memory { argument: "memory", needed, given });
     }
-    let skip = memory.as_ptr().align_offset(align_of::<HangingPose>());
-    let (front, rest) = memory[skip..].split_at_mut(size_of::<HangingPose>() * count as usize);
-    let first = front.as_mut_ptr().cast::<HangingPose>();
+    let skip = memory.as_ptr().align_offset(align_of::<P>());
+    let (front, rest) = memory[skip..].split_at_mut(size_of::<P>() * count as usize);
+    let first = front.as_mut_ptr().cast::<P>();
     for index in 0..count as usize {
         // SAFETY: aligned, and within the bytes counted above.
-        unsafe { first.add(index).write(HangingPose::default()) };
+        unsafe { first.add(index).write(P::default()) };
     }
     // SAFETY: all of them are initialised, and the memory is borrowed as long as they are.
     Ok((unsafe { core::slice::from_raw_parts_mut(first, count as usize) }, rest))

@@ -1,6 +1,6 @@
 use crate::border::{DETAIL, Public, Region, check, check_size, elements, keep_apart, report, rows};
 use crate::detail::hangpose_detail;
-use crate::failure::{Failure, HungFault, Place};
+use crate::failure::{Failure, HungFault, ObjectFault, Place};
 use crate::handle::Shared;
 use crate::kind::{hangpose_kind, kinds, mask};
 use crate::object::{ObjectHandle, hangpose_object};
@@ -9,17 +9,19 @@ use crate::region::{BY, ON, hangpose_region, region_place};
 use crate::status::*;
 use core::f32::consts::PI;
 use hangpose_core::geometry::{MAX_COORDINATE, Pose};
-use hangpose_core::hanging::{Approach, Distance, Hung, Object, Request, RequestError};
+use hangpose_core::hanging::{Approach, Distance, Hung, MAX_HUNG, Object, Request, RequestError};
 
-/// Greatest number of objects that hang already, hangpose_request.hung_count. Of more, pass points of their surfaces as
-/// hangpose_request.scene_points.
+/// Greatest number of objects that hang already, hangpose_request.hung_count, and of objects that hang at once, those
+/// of hangpose_predict_many included. Of more, pass points of their surfaces as hangpose_request.scene_points.
 pub const HANGPOSE_MAX_HUNG: usize = 32;
+
+const _: () = assert!(HANGPOSE_MAX_HUNG == MAX_HUNG);
 
 /// An object that hangs already. Part of hangpose_request.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_hung {
-    /// The object. It must have been analysed with voxels. The object that is to be hung may hang already, too.
+    /// The object. The object that is to be hung may hang already, too.
     pub object: *const hangpose_object,
     /// Its pose: x, y, z of its origin, metres, in supporter coordinates, each within +-1,000,000.
     pub position: [f32; 3],
@@ -28,9 +30,9 @@ pub struct hangpose_hung {
     pub quaternion: [f32; 4],
 }
 
-/// What hangpose_predict looks for: how and where the object hangs, and what it must not touch. Set the struct with
-/// hangpose_request_init, then change single fields. The library keeps no pointer to the arrays after the call. With
-/// hangpose_params.settle = 0 only the regions count, and these only with HANGPOSE_CANDIDATES_CONTACTS.
+/// What hangpose_predict and hangpose_predict_many look for: how and where the object hangs, and what it must not touch.
+/// Set the struct with hangpose_request_init, then change single fields. The library keeps no pointer to the arrays after
+/// the call. With hangpose_params.settle = 0 only the regions count, and these only with HANGPOSE_CANDIDATES_CONTACTS.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hangpose_request {
@@ -219,10 +221,8 @@ impl hangpose_hung {
     unsafe fn share<'a>(&self) -> Result<(Shared<'a, Object<'static>>, Pose), HungFault> {
         let &Self { object, position, quaternion } = self;
         // SAFETY: those of this function.
-        let object = unsafe { ObjectHandle::share(object.cast()) }.map_err(|failure| match failure {
-            Failure::Null { .. } => HungFault::Null,
-            _ => HungFault::Handle,
-        })?;
+        let object = unsafe { ObjectHandle::share(object.cast()) }
+            .map_err(|failure| HungFault::Object(ObjectFault::of(&failure)))?;
         if !position.iter().all(|x| x.abs() <= MAX_COORDINATE) {
             return Err(HungFault::Position(position));
         }

@@ -33,7 +33,8 @@ pub struct Many {
 ///
 /// One object after the other takes the best pose that is left, or one nearly as good that leaves more room. Where an object has
 /// none, each of the others in turn gives up its pose to it, if there is another one for that. `request` holds for every object;
-/// at most [`MAX_HUNG`] hang in the end, with those of [`Request::hung`], and the objects beyond have no pose.
+/// at most [`MAX_HUNG`] hang in the end, with those of [`Request::hung`], and the objects beyond have no pose. Of an object that
+/// is given several times, as many copies hang as come before the first without a pose.
 ///
 /// `poses` has one element for each object. `memory` is working memory, [`predict_bytes`](super::predict_bytes) of it. A work
 /// limit of `monitor` holds for each of the predictions, of which there are at most one for each object and two for each pair.
@@ -52,6 +53,13 @@ pub fn predict_many<'o>(
         Search { supporter, request, params, memory, monitor, rejection: None, found: Many::NONE };
     poses.fill(None);
     for index in 0..objects.len().min(poses.len()).min(MAX_HUNG.saturating_sub(request.hung.len())) {
+        // The search for another copy would go the same way.
+        let is_same = |(object, pose): (&&Object, &Option<HangingPose>)| {
+            pose.is_none() && core::ptr::eq(*object, objects[index])
+        };
+        if objects[..index].iter().zip(&*poses).any(is_same) {
+            continue;
+        }
         poses[index] = search.pose_of(index, objects, poses)?;
         let reason = search.rejection;
         if poses[index].is_none() {

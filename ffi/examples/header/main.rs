@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// The source files in the order of the header.
-const SOURCES: [&str; 20] = [
+const SOURCES: [&str; 21] = [
     "version",
     "status",
     "detail",
@@ -23,6 +23,7 @@ const SOURCES: [&str; 20] = [
     "request",
     "pose",
     "predict",
+    "many",
     "sample",
     "depth_image",
     "volume_settings",

@@ -329,6 +329,40 @@ static hangpose_status ask(const hangpose_request *request) {
                           POSES, &found, &detail);
 }
 
+static hangpose_status ask_many(const hangpose_object *const *objects, uint32_t count, hangpose_pose *poses,
+                                hangpose_many *many) {
+  return hangpose_predict_many(objects, count, supporter, NULL, &params, work, predict_size, NULL, poses,
+                               sizeof *poses, many, &detail);
+}
+
+static void many_at_once(void) {
+  static hangpose_pose poses[HANGPOSE_MAX_HUNG + 1];
+  static unsigned char odd[64];
+  const hangpose_object *const two[2] = {object, object}, *const gap[2] = {object, NULL};
+  const hangpose_object *const other[2] = {object, (void *)supporter};
+  hangpose_many many = {.struct_size = sizeof many};
+  CHECK(ask_many(two, 2, poses, &many) == HANGPOSE_OK && many.placed >= 1 && poses[0].has_pose == 1);
+  REFUSED(ask_many(two, 0, poses, &many));
+  REFUSED(ask_many(two, HANGPOSE_MAX_HUNG + 1, poses, &many));
+  REFUSED(ask_many(two, UINT32_MAX, poses, &many));
+  CHECK(ask_many(gap, 2, poses, &many) == HANGPOSE_ERROR_NULL && detail.index == 1);
+  CHECK(ask_many(other, 2, poses, &many) == HANGPOSE_ERROR_HANDLE && detail.index == 1);
+  for (int i = 0; i < 2; ++i) {
+    void *const bad = i == 0 ? NULL : odd + 1;
+    REFUSED(ask_many(bad, 2, poses, &many));
+    REFUSED(ask_many(two, 2, bad, &many));
+    REFUSED(ask_many(two, 2, poses, bad));
+  }
+  REFUSED(ask_many(two, 2, (void *)work, &many));
+  REFUSED(ask_many(two, 2, (void *)&many, &many));
+  REFUSED(ask_many((void *)poses, 1, poses, &many));
+  CHECK(ask_many(two, 2, (void *)object, &many) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(strcmp(detail.field, "poses") == 0);
+  many.struct_size = 1;
+  REFUSED(ask_many(two, 2, poses, &many));
+  CHECK(is_unharmed());
+}
+
 static void requests(void) {
   static const uint32_t indices[2] = {0, UINT32_MAX};
   static unsigned char odd[sizeof(hangpose_request) + 8];
@@ -541,6 +575,7 @@ int main(void) {
   counts_and_numbers();
   overlaps();
   requests();
+  many_at_once();
   handles();
   other_params();
   updates();

@@ -108,6 +108,20 @@ int main() {
   auto beside = hangpose::predict(moved, *peg, request, params, again);
   CHECK(beside && beside->status == HANGPOSE_OK &&
         std::memcmp(again[0].rest_position, poses[0].rest_position, sizeof(hangpose::vec3)) != 0);
+  // Several at once.
+  request.hung_count = 0;
+  const hangpose::object *const twice[2] = {&moved, &moved};
+  hangpose::pose both[2];
+  auto at_once = hangpose::predict_many(twice, *peg, request, params, both);
+  CHECK(at_once && at_once->status == HANGPOSE_OK && at_once->placed == 2 && both[1].has_pose == 1);
+  CHECK(at_once->stage == HANGPOSE_STAGE_NONE && at_once->distance_queries > 0);
+  CHECK(std::memcmp(both[0].rest_position, both[1].rest_position, sizeof(hangpose::vec3)) != 0);
+  auto unequal = hangpose::predict_many(twice, *peg, request, params, again);
+  CHECK(!unequal && std::strcmp(unequal.error().field(), "poses") == 0);
+  const hangpose::object *const missing[2] = {&moved, nullptr};
+  auto no_object = hangpose::predict_many(missing, *peg, request, params, both);
+  CHECK(!no_object && std::strcmp(no_object.error().field(), "objects") == 0);
+  CHECK(no_object.error().detail().index == 1);
   auto nothing = hangpose::predict(moved, *peg, params, hangpose::view<hangpose::pose>());
   CHECK(!nothing);
 

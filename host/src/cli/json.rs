@@ -16,6 +16,8 @@ pub(super) const SCHEMA: u32 = 2;
 #[derive(Serialize)]
 pub(super) struct Prediction<'a> {
     pub(super) schema: u32,
+    /// Number of copies of the object that shall hang at once. With more than one, each pose is for one of them.
+    pub(super) count: usize,
     pub(super) poses: Vec<Pose<'a>>,
     pub(super) rejection: Option<Reason>,
     pub(super) stats: Stats,
@@ -69,7 +71,8 @@ pub(super) struct Stats {
     pub(super) memory_bytes: MemoryBytes,
     pub(super) sites: PerPart,
     pub(super) contacts: PerPart,
-    pub(super) counts: Counts,
+    /// Null for several copies, which take several predictions.
+    pub(super) counts: Option<Counts>,
 }
 
 #[derive(Default, Serialize)]

@@ -17,6 +17,7 @@ pub(crate) use terminal::say;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use hangpose::geometry::Aabb;
+use hangpose::hanging::MAX_HUNG;
 use recording::{DepthArguments, RecordingArguments};
 use request::RequestArguments;
 use std::path::PathBuf;
@@ -109,6 +110,9 @@ struct ResultArguments {
     /// Maximum number of poses.
     #[arg(long, value_name = "K", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     top: u32,
+    /// Number of copies of the object that hang on the supporter at once. Each gets one pose, beside the others.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=MAX_HUNG as i64), conflicts_with = "top")]
+    count: u32,
     /// File for the result as JSON; - prints the JSON to standard output instead of the table.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,

@@ -7,14 +7,17 @@ use super::output::Output;
 use super::recording::Recording;
 use super::terminal::{self, say};
 use super::{CloudArguments, FileArguments, PredictArguments, progress};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use hangpose::files::{self, CloudFile, MeshFile, SupporterFile};
 use hangpose::geometry::{Aabb, Cloud, Mesh, Point};
 use hangpose::hanging::sites::{Cost, SiteMatch};
-use hangpose::hanging::{self, HangingPose, Object, Rest, Stage, Supporter, predict, predict_bytes};
+use hangpose::hanging::{
+    self, HangingPose, Object, Rejection, Request, Rest, Stage, Supporter, predict, predict_bytes,
+    predict_many,
+};
 use hangpose::mechanics::Unseen;
 use hangpose::memory::Limits;
-use hangpose::{CentreOfMass, Monitor};
+use hangpose::{CentreOfMass, Monitor, Params};
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -30,14 +33,21 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
         params.centre_of_mass = CentreOfMass::Given(com.map(|x| x as f32));
         params.validate().context("--com")?;
     }
+    arguments.request.check(&params)?;
+    let result = &arguments.result;
+    let count = result.count as usize;
+    ensure!(
+        params.settle || count == 1,
+        "--count: without their release nothing keeps the copies apart; pass --profile default, or settle = true in the --params file"
+    );
     let (object_source, supporter_source) = (arguments.object()?, arguments.supporter()?);
     let inputs: Vec<&Path> = object_source
         .files()
         .into_iter()
         .chain(supporter_source.files())
         .chain(arguments.method.params.as_deref())
+        .chain(arguments.request.file())
         .collect();
-    let result = &arguments.result;
     let output = result.json.as_deref().map(|path| Output::prepare(path, &inputs)).transpose()?;
     let is_table_shown = !matches!(output, Some(Output::Standard));
 
@@ -59,10 +69,9 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     let prediction_memory = &mut vec![0; memory_bytes.prediction];
     let object_memory = &mut vec![0; memory_bytes.object];
     let supporter_memory = &mut vec![0; memory_bytes.supporter];
-    let mut poses = vec![HangingPose::default(); result.top as usize];
     let monitors = [Monitor::new(), Monitor::new(), Monitor::new()];
     let monitors = monitors.each_ref();
-    let (object, supporter, prediction) = progress::show_while(&monitors, || -> Result<_> {
+    let (object, supporter, found) = progress::show_while(&monitors, || -> Result<_> {
         let analyse_object = || timed(move || Object::analyze(mesh, params, object_memory, monitors[0]));
         let analyse_supporter =
             || timed(move || Supporter::analyze(cloud, params, supporter_memory, monitors[1]));
@@ -76,27 +85,33 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
             (analyse_object(), analyse_supporter())
         };
         let (object, supporter) = ((object.0?, object.1), (supporter.0?, supporter.1));
-        let (prediction, matching) = timed(|| {
-            predict(&object.0, &supporter.0, request, params, &mut poses, prediction_memory, monitors[2])
+        let (found, matching) = timed(|| {
+            let models = (&object.0, &supporter.0);
+            if count > 1 {
+                Found::of_copies(models, count, request, params, prediction_memory, monitors[2])
+            } else {
+                Found::of_one(models, result.top as usize, request, params, prediction_memory, monitors[2])
+            }
         });
         (seconds.object, seconds.supporter, seconds.matching) = (object.1, supporter.1, matching);
-        Ok((object.0, supporter.0, prediction?))
+        Ok((object.0, supporter.0, found?))
     })?;
     seconds.total = start.elapsed().as_secs_f64();
 
     input::tell_of_cloud(supporter_source.name(), &supporter, cloud);
     warn_of_centre_of_mass(mesh, arguments.files.com, object_source.name());
-    let text = table(&prediction, (mesh, cloud), &object, &supporter);
+    let text = table(&found, count, (mesh, cloud), &object, &supporter);
     if let Some(output) = output {
         let document = Prediction {
             schema: json::SCHEMA,
+            count,
             poses: (1..)
-                .zip(prediction.poses)
+                .zip(&found.poses)
                 .map(|(rank, pose)| {
                     Pose::new(rank, pose, object.places().sites(), supporter.places().sites())
                 })
                 .collect(),
-            rejection: prediction.rejection.as_ref().map(Reason::from),
+            rejection: found.rejection.as_ref().map(Reason::from),
             stats: Stats {
                 seconds,
                 memory_bytes,
@@ -108,7 +123,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
                     object: object.places().contacts().len(),
                     supporter: supporter.places().contacts().len(),
                 },
-                counts: (&prediction.counts).into(),
+                counts: found.counts.as_ref().map(Into::into),
             },
             params,
         };
@@ -117,7 +132,50 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     if is_table_shown {
         terminal::print(&text)?;
     }
-    Ok(if prediction.rejection.is_some() { ExitCode::from(REJECTED) } else { ExitCode::SUCCESS })
+    Ok(if found.poses.is_empty() { ExitCode::from(REJECTED) } else { ExitCode::SUCCESS })
+}
+
+/// What was found for one object, or for several copies of it at once.
+struct Found {
+    /// The poses of one object, best first, or of the copies in order.
+    poses: Vec<HangingPose>,
+    /// Why there are no poses, or not one for each copy.
+    rejection: Option<Rejection>,
+    /// How much was left after each step of the prediction; `None` for copies, which take several predictions.
+    counts: Option<hanging::Counts>,
+}
+
+impl Found {
+    /// Up to `top` poses of one object.
+    fn of_one(
+        (object, supporter): (&Object, &Supporter),
+        top: usize,
+        request: &Request,
+        params: &Params,
+        memory: &mut [u8],
+        monitor: &Monitor,
+    ) -> Result<Self> {
+        let mut poses = vec![HangingPose::default(); top];
+        let found = predict(object, supporter, request, params, &mut poses, memory, monitor)?;
+        let (rejection, counts, left) = (found.rejection, Some(found.counts), found.poses.len());
+        poses.truncate(left);
+        Ok(Self { poses, rejection, counts })
+    }
+
+    /// One pose for each of `count` copies. If there is no room for one, there is none for those after it.
+    fn of_copies<'o>(
+        (object, supporter): (&'o Object<'o>, &Supporter),
+        count: usize,
+        request: &Request<'o>,
+        params: &Params,
+        memory: &mut [u8],
+        monitor: &Monitor,
+    ) -> Result<Self> {
+        let mut poses = vec![None; count];
+        let copies = vec![object; count];
+        let found = predict_many(&copies, supporter, request, params, &mut poses, memory, monitor)?;
+        Ok(Self { poses: poses.into_iter().flatten().collect(), rejection: found.rejection, counts: None })
+    }
 }
 
 /// What an object or a supporter is read from.
@@ -208,9 +266,10 @@ fn warn_of_centre_of_mass(mesh: &Mesh, com: Option<[f64; 3]>, name: &Path) {
     }
 }
 
-/// The poses as a table, or the reason why there are none.
+/// The poses as a table, or the reason why there are none, or none for the last of `count` copies.
 fn table(
-    prediction: &hanging::Prediction,
+    found: &Found,
+    count: usize,
     (mesh, cloud): (&Mesh, &Cloud),
     object: &Object,
     supporter: &Supporter,
@@ -229,7 +288,7 @@ fn table(
         size(&supporter.points().aabb()),
         candidates(supporter.places().sites().len(), "support sites", supporter.places().contacts().len()),
     );
-    if let Some(rejection) = &prediction.rejection {
+    if let (Some(rejection), []) = (&found.rejection, &found.poses[..]) {
         text += &format!("nothing hangs: {}\n", rejection.stage);
         if rejection.stage == Stage::NoSupport {
             text += "is up z in the supporter's frame? If not, pass --supporter-up or --gravity\n";
@@ -240,11 +299,11 @@ fn table(
         let [x, y, z] = [p.x, p.y, p.z].map(|x| 1000.0 * x);
         format!("{x:8.1} {y:7.1} {z:7.1}")
     };
-    let best = prediction.poses.first();
+    let best = found.poses.first();
     if best.is_some_and(|pose| pose.matched.is_some()) {
         text += "rank    total  collision  boundary  contact area         support site, mm         hanging site, mm\n";
     }
-    for (rank, pose) in (1..).zip(prediction.poses) {
+    for (rank, pose) in (1..).zip(&found.poses) {
         if let Some(SiteMatch { cost, object_site, support_site, .. }) = &pose.matched {
             let Cost { collision, boundary, contact_area, total } = cost;
             let on = point(&supporter.places().sites()[*support_site as usize].position);
@@ -258,6 +317,13 @@ fn table(
         } else if pose.matched.is_none() {
             text +=
                 &format!("{rank:4}  object origin at{} mm\n", point(&pose.pose.translation.vector.into()));
+        }
+    }
+    if count > 1
+        && let Some(rejection) = &found.rejection
+    {
+        for copy in found.poses.len() + 1..=count {
+            text += &format!("{copy:4}  no room beside the others: {}\n", rejection.stage);
         }
     }
     text

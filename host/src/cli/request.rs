@@ -2,12 +2,14 @@
 
 use super::input::{self, Placement};
 use super::{FileArguments, parse_numbers};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
 use hangpose::files::{self, CloudFile, SupporterFile};
-use hangpose::hanging::{Approach, Distance, Region, Request};
+use hangpose::hanging::{Approach, Distance, Region, Request, RequestError};
 use hangpose::mechanics::{Kind, Kinds};
-use std::path::PathBuf;
+use hangpose::{Candidates, Params};
+use std::f32::consts::PI;
+use std::path::{Path, PathBuf};
 
 /// How and where the object shall hang.
 #[derive(Args)]
@@ -31,21 +33,21 @@ pub(super) struct RequestArguments {
     #[arg(long, value_name = "X,Y,Z,X,Y,Z", value_parser = parse_numbers::<6>, allow_hyphen_values = true)]
     by_box: Option<[f64; 6]>,
     /// Direction in which the object comes to its release pose in a straight line, in the supporter frame.
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_direction, allow_hyphen_values = true)]
     approach: Option<[f64; 3]>,
     /// Largest angle between that line and the direction, degrees.
-    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, requires = "approach")]
+    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = parse_angle, allow_hyphen_values = true, requires = "approach")]
     approach_angle: f32,
     /// Length of that line, metres.
-    #[arg(long, value_name = "METRES", default_value_t = 0.1, requires = "approach")]
+    #[arg(long, value_name = "METRES", default_value_t = 0.1, value_parser = parse_length, allow_hyphen_values = true, requires = "approach")]
     approach_length: f32,
     /// Things near the supporter, which the object does not touch and never hangs on: a point cloud or a mesh in the units
     /// and axes of the supporter's file.
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
     /// How much two poses of a kind differ at least: metres between the centres of mass, or degrees of rotation.
-    #[arg(long, value_name = "METRES,DEGREES", value_parser = parse_numbers::<2>)]
-    distinct: Option<[f64; 2]>,
+    #[arg(long, value_name = "METRES,DEGREES", value_parser = parse_distance, allow_hyphen_values = true)]
+    distinct: Option<Distance>,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -66,13 +68,52 @@ struct Place {
 /// Radius around a point if none is given, metres: about a hook.
 const RADIUS: f32 = 0.02;
 
+/// Greatest length in a request, metres; the core checks it, too.
+const MAX_LENGTH: f32 = 10.0;
+
 fn parse_place(text: &str) -> Result<Place, String> {
-    if let Ok([x, y, z, radius]) = parse_numbers::<4>(text) {
-        return Ok(Place { at: [x, y, z], radius: radius as f32 });
+    if let Ok(at) = parse_numbers::<3>(text) {
+        return Ok(Place { at, radius: RADIUS });
     }
-    parse_numbers::<3>(text)
-        .map(|at| Place { at, radius: RADIUS })
-        .map_err(|error| format!("{error}, and a radius if need be"))
+    match parse_numbers::<4>(text) {
+        Ok([x, y, z, radius]) if radius >= 0.0 => Ok(Place { at: [x, y, z], radius: radius as f32 }),
+        Ok(_) => Err("the radius is negative: use 0 or more metres, as in 0.07,0,0.15,0.02".into()),
+        Err(_) => Err("use x,y,z or x,y,z,radius in metres, as in 0.07,0,0.15,0.02".into()),
+    }
+}
+
+fn parse_direction(text: &str) -> Result<[f64; 3], String> {
+    match parse_numbers::<3>(text)? {
+        [0.0, 0.0, 0.0] => Err("it has no direction: use numbers that are not all 0, as in 0,0,-1".into()),
+        direction => Ok(direction),
+    }
+}
+
+fn parse_angle(text: &str) -> Result<f32, String> {
+    match text.trim().parse() {
+        Ok(degrees) if (0.0..=180.0).contains(&degrees) => Ok(degrees),
+        _ => Err("use 0 to 180 degrees".into()),
+    }
+}
+
+fn parse_length(text: &str) -> Result<f32, String> {
+    match text.trim().parse() {
+        Ok(metres) if (0.0..=MAX_LENGTH).contains(&metres) => Ok(metres),
+        _ => Err(format!("use 0 to {MAX_LENGTH} metres")),
+    }
+}
+
+fn parse_distance(text: &str) -> Result<Distance, String> {
+    let parsed = text.split_once(',').map(|(metres, degrees)| (parse_length(metres), parse_angle(degrees)));
+    match parsed {
+        Some((Ok(position), Ok(degrees))) => Ok(Distance { position, rotation: radians(degrees) }),
+        _ => Err(format!("use 0 to {MAX_LENGTH} metres and 0 to 180 degrees, as in 0.05,30")),
+    }
+}
+
+/// Degrees of 0 to 180 in radians of 0 to π, whatever the rounding.
+fn radians(degrees: f32) -> f32 {
+    degrees.to_radians().min(PI)
 }
 
 /// What the options ask for, with the memory that a [`Request`] borrows.
@@ -88,6 +129,31 @@ pub(super) struct Wishes {
 }
 
 impl RequestArguments {
+    /// Fails if an option would have no effect with these constants.
+    pub(super) fn check(&self, params: &Params) -> Result<()> {
+        let is_placed = params.settle || params.candidates == Candidates::Contacts;
+        for (option, is_given, has_effect) in [
+            ("--allow", !self.allow.is_empty(), params.settle),
+            ("--here", self.here.is_some(), is_placed),
+            ("--by", self.by.is_some(), is_placed),
+            ("--by-box", self.by_box.is_some(), is_placed),
+            ("--approach", self.approach.is_some(), params.settle),
+            ("--scene", self.scene.is_some(), params.settle),
+            ("--distinct", self.distinct.is_some(), params.settle),
+        ] {
+            ensure!(
+                has_effect || !is_given,
+                "{option} has no effect on poses that are not released: pass --profile default, or settle = true in the --params file"
+            );
+        }
+        Ok(())
+    }
+
+    /// The file that is read, if any.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.scene.as_deref()
+    }
+
     /// Reads the scene, and moves what is in the supporter frame to the coordinates of its cloud.
     pub(super) fn read(&self, files: &FileArguments, supporter: &CloudFile) -> Result<Wishes> {
         let kinds = |names: &[KindName]| Kinds::of(&names.iter().map(|name| name.kind()).collect::<Vec<_>>());
@@ -104,14 +170,11 @@ impl RequestArguments {
             }),
             approach: self.approach.map(|direction| Approach {
                 direction: direction.map(|x| x as f32),
-                angle: self.approach_angle.to_radians(),
+                angle: radians(self.approach_angle),
                 length: self.approach_length,
             }),
             scene: self.scene(files, supporter)?,
-            distinct: self.distinct.map_or(Request::ANY.distinct, |[metres, degrees]| Distance {
-                position: metres as f32,
-                rotation: (degrees as f32).to_radians(),
-            }),
+            distinct: self.distinct.unwrap_or(Request::ANY.distinct),
         })
     }
 
@@ -163,7 +226,22 @@ impl Wishes {
             hung: &[],
             distinct: self.distinct,
         };
-        request.validate().context("--here, --by, --approach or --distinct")?;
-        Ok(request)
+        match request.validate() {
+            Ok(()) => Ok(request),
+            Err(error) => Err(error).context(self.option(&error)),
+        }
+    }
+
+    /// The option that gave what is wrong.
+    fn option(&self, error: &RequestError) -> &'static str {
+        match error {
+            RequestError::NothingAllowed => "--allow",
+            RequestError::On(_) => "--here",
+            RequestError::By(_) if self.by_box.is_some() => "--by-box",
+            RequestError::By(_) => "--by",
+            RequestError::Approach => "--approach",
+            RequestError::Scene { .. } => "--scene",
+            RequestError::Distinct => "--distinct",
+        }
     }
 }

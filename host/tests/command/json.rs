@@ -14,7 +14,8 @@ fn the_document_has_the_fields_that_programs_read() {
     assert!(document["rejection"].is_null());
     let mut found = keys(&document);
     found.sort_unstable();
-    assert_eq!(found, ["params", "poses", "rejection", "schema", "stats"]);
+    assert_eq!(document["count"], 1);
+    assert_eq!(found, ["count", "params", "poses", "rejection", "schema", "stats"]);
 
     let stats = &document["stats"];
     for stage in ["read", "object", "supporter", "matching", "total"] {
@@ -32,8 +33,8 @@ fn the_document_has_the_fields_that_programs_read() {
     let fates = ["rotated_off", "slid_off", "moving", "at_rest"].map(settling);
     assert_eq!(settling("released"), fates.iter().sum::<u64>(), "every release has one fate");
     assert!(settling("candidates") >= settling("clear") && settling("at_rest") >= settling("firm"));
-    // The document has at most ten poses.
-    assert_eq!(settling("probable").min(10), document["poses"].as_array().unwrap().len() as u64);
+    // Of poses that hardly differ the document has one.
+    assert!(settling("probable") >= document["poses"].as_array().unwrap().len() as u64);
 
     assert_eq!(document["params"]["samples"], 10_000);
     assert_eq!(document["params"]["seed"], 0);
@@ -72,7 +73,6 @@ fn poses_come_to_rest_with_margins() {
         let centre_of_mass = numbers::<3>(&run!("inspect", object, "--json").json()["centre_of_mass"]);
         let poses = document["poses"].as_array().unwrap();
         assert!(!poses.is_empty() && poses.len() <= 10);
-        let mut last = 1.0;
         for (rank, entry) in (1..).zip(poses) {
             assert_eq!(entry["rank"], rank);
             assert_eq!(entry["release_pose"], entry["pose"]);
@@ -91,8 +91,8 @@ fn poses_come_to_rest_with_margins() {
 
             let probability = number(&entry["probability"]);
             let least = number(&document["params"]["min_probability"]);
-            assert!((least..=last).contains(&probability), "rank {rank}: {probability}");
-            last = probability;
+            // The rank depends on the kind, too.
+            assert!((least..=1.0).contains(&probability), "rank {rank}: {probability}");
 
             let margin = &entry["margin"];
             let tilts = numbers::<8>(&margin["tilts"]);

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod depth;
+mod how_and_where;
 mod inspect;
 mod json;
 mod notes;

@@ -43,9 +43,23 @@ fn help_lists_every_option_and_status() {
             .all(|part| run.stdout.contains(part))
     );
     let help = run!("predict", "--help").stdout;
-    for option in
-        ["object", "supporter", "profile", "top", "seed", "com", "json", "params", "threads", "viewpoint"]
-    {
+    for option in [
+        "object",
+        "supporter",
+        "profile",
+        "top",
+        "count",
+        "here",
+        "by",
+        "allow",
+        "scene",
+        "seed",
+        "com",
+        "json",
+        "params",
+        "threads",
+        "viewpoint",
+    ] {
         assert!(help.contains(&format!("--{option} <")), "{option}");
     }
     let help_of_scan = run!("scan", "--help").stdout;
@@ -73,8 +87,9 @@ fn the_table_says_what_was_read_and_agrees_with_the_json() {
         let tilt = numbers::<8>(&margin["tilts"]).into_iter().fold(f64::INFINITY, f64::min);
         let at_least = if tilt >= 1.2 { "at least " } else { "" };
         let words = format!(
-            "{:4}  hangs with probability {:.0} %, tolerates a tilt of {at_least}{:.0} degrees or a knock of {:.1} m/s, sinks {:.1} mm after release, main contact at (",
+            "{:4}  {}: hangs with probability {:.0} %, tolerates a tilt of {at_least}{:.0} degrees or a knock of {:.1} m/s, sinks {:.1} mm after release, main contact at (",
             number(&pose["rank"]),
+            pose["kind"].as_str().unwrap(),
             100.0 * number(&pose["probability"]),
             tilt.to_degrees(),
             number(&margin["knock_speed"]),
