@@ -416,8 +416,8 @@ fn pictures(cases: &[Case], folder: &Path) -> Result<()> {
     let examples = [
         (Kind::Threaded, "mug", "mug tree"),
         (Kind::Hooked, "clothes hanger", "rod"),
-        (Kind::Capped, "cap", "tilted peg"),
-        (Kind::Balanced, "utensil", "J hook"),
+        (Kind::Capped, "cap", "mug tree"),
+        (Kind::Balanced, "picture frame", "peg"),
     ];
     for (kind, object, supporter) in examples {
         let is_wanted = |case: &&Case| case.object_kind == object && case.supporter_kind == supporter;
@@ -425,8 +425,9 @@ fn pictures(cases: &[Case], folder: &Path) -> Result<()> {
         let found = cases.iter().filter(is_wanted).find_map(|case| {
             let cloud = case.supporter_cloud();
             let cloud = cloud.cloud().expect("samples are valid");
-            let poses = predicted(&case.object.mesh(), &cloud, &request, &params(case), 1);
-            poses.first().and_then(|pose| Some((case, pose.pose, pose.rest?.pose)))
+            let poses = predicted(&case.object.mesh(), &cloud, &request, &params(case), ALL_POSES);
+            let rests = poses.iter().filter_map(|pose| Some((case, pose.pose, pose.rest?.pose)));
+            rests.filter(|(case, _, rest)| case.hangs(rest) == kind).next()
         });
         let (case, release, rest) =
             found.with_context(|| format!("no {object} is {kind} on a {supporter}"))?;
