@@ -127,6 +127,7 @@ mod tests {
             request(RequestError::Scene { point: most, position: worst }),
             request(RequestError::Hung { index: most }),
             request(RequestError::Distinct),
+            request(RequestError::Symmetry { index: most }),
         ] {
             let text = failure.to_string();
             assert!(text.len() < HANGPOSE_MESSAGE_CHARS, "{} bytes: {text}", text.len());

@@ -96,6 +96,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
                     Pose::new(rank, pose, object.places().sites(), supporter.places().sites())
                 })
                 .collect(),
+            symmetries: json::symmetries(&object),
             rejection: prediction.rejection.as_ref().map(Reason::from),
             stats: Stats {
                 seconds,

@@ -162,6 +162,7 @@ impl Wishes {
             scene: &self.scene,
             hung: &[],
             distinct: self.distinct,
+            symmetries: None,
         };
         request.validate().context("--here, --by, --approach or --distinct")?;
         Ok(request)

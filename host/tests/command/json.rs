@@ -14,7 +14,7 @@ fn the_document_has_the_fields_that_programs_read() {
     assert!(document["rejection"].is_null());
     let mut found = keys(&document);
     found.sort_unstable();
-    assert_eq!(found, ["params", "poses", "rejection", "schema", "stats"]);
+    assert_eq!(found, ["params", "poses", "rejection", "schema", "stats", "symmetries"]);
 
     let stats = &document["stats"];
     for stage in ["read", "object", "supporter", "matching", "total"] {
