@@ -74,7 +74,7 @@
 #define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 506
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 46080
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 14
-#define HANGPOSE_PREDICT_BYTES_EACH_POSE 428
+#define HANGPOSE_PREDICT_BYTES_EACH_POSE 432
 #define HANGPOSE_VOLUME_BYTES_AT_LEAST 2048
 #define HANGPOSE_VOLUME_BYTES_EACH_BLOCK 2072
 #define HANGPOSE_COMPLETE_BYTES_AT_LEAST 2048
@@ -98,9 +98,15 @@
 // Value of `work_limit` for no limit.
 #define HANGPOSE_NO_WORK_LIMIT 18446744073709551615ull
 
+// Greatest hangpose_symmetry.fold.
+#define HANGPOSE_MAX_FOLD 360
+
 // Greatest number of objects that hang already, hangpose_request.hung_count, and of objects that hang at once, those
 // of hangpose_predict_many included. Of more, pass points of their surfaces as hangpose_request.scene_points.
 #define HANGPOSE_MAX_HUNG 32
+
+// Greatest number of symmetries that are given, hangpose_request.symmetry_count.
+#define HANGPOSE_MAX_SYMMETRIES 8
 
 // Number of directions in which gravity is tilted.
 #define HANGPOSE_DIRECTIONS 8
@@ -357,6 +363,8 @@ typedef struct hangpose_object_info {
   uint32_t sites;
   // Number of contact candidates; 0 with HANGPOSE_CANDIDATES_SITES.
   uint32_t contacts;
+  // Number of symmetries that were detected; 0 with hangpose_params.voxels = 0.
+  uint32_t symmetries;
   // Number of rays cast.
   uint64_t rays;
   // Number of distance and inside-outside queries.
@@ -406,6 +414,18 @@ typedef struct hangpose_object_contact {
   // metres; infinite if nothing stops it, as in a hole.
   float passage;
 } hangpose_object_contact;
+
+// Turns of an object after which it looks as before, about an axis through its centre of mass.
+typedef struct hangpose_symmetry {
+  // sizeof(hangpose_symmetry), set by the caller.
+  uint32_t struct_size;
+  // 0 for a solid of revolution, which may turn by any angle; n, from 2 to HANGPOSE_MAX_FOLD, for turns by multiples
+  // of an n-th of a full turn.
+  uint32_t fold;
+  // x, y, z of the direction of the axis, in object coordinates; the sign is arbitrary. Its length is 1 where it was
+  // detected; in a hangpose_request, any but zero.
+  float axis[3];
+} hangpose_symmetry;
 
 // Result of the analysis of a supporter.
 typedef struct hangpose_supporter_info {
@@ -545,7 +565,7 @@ typedef struct hangpose_request {
   // Length of the way that is free, metres; 0 to 10.
   float approach_length;
   // Two poses of the same kind differ by this distance of the centres of mass or by distinct_rotation, or by more,
-  // metres; 0 to 10. Default: 0.02.
+  // whichever way the object is turned by its symmetries; metres; 0 to 10. Default: 0.02.
   float distinct_position;
   // Angle of the rotation from one pose to the other, radians; 0 to pi. Default: 0.35.
   float distinct_rotation;
@@ -553,6 +573,12 @@ typedef struct hangpose_request {
   uint32_t scene_point_count;
   // Number of objects that hang already; 0, the default, to HANGPOSE_MAX_HUNG.
   uint32_t hung_count;
+  // 1 if the object has the symmetries in the array `symmetries` and no others; 0, the default, for those that were
+  // detected, see hangpose_object_get_symmetry. Poses that differ by a symmetry, or by two about different axes one
+  // after the other, are one pose.
+  uint32_t has_symmetries;
+  // Number of symmetries, 0 to HANGPOSE_MAX_SYMMETRIES. With has_symmetries = 1, 0 says that the object has none.
+  uint32_t symmetry_count;
   // The part of the supporter that carries the object: at least half of its weight rests there. In supporter
   // coordinates. Default: everywhere.
   struct hangpose_region on;
@@ -566,6 +592,8 @@ typedef struct hangpose_request {
   // Array of hung_count objects that hang on the supporter already. As the scene, with their exact shapes. May be
   // null if hung_count is 0.
   const struct hangpose_hung *hung;
+  // Array of symmetry_count symmetries. May be null if symmetry_count is 0.
+  const struct hangpose_symmetry *symmetries;
 } hangpose_request;
 
 // Stability margins of a rest pose. Part of hangpose_pose.
@@ -623,6 +651,9 @@ typedef struct hangpose_pose {
   hangpose_kind kind;
   // Probability that the object hangs and stays, 0 to 1.
   float probability;
+  // Probability that it also stays when gravity tilts by 21.8 degrees towards any side, 0 to 1. Among poses that are sure to
+  // hang it tells which is the firmest.
+  float robustness;
   // Share of the directions from which no camera looked at the object, 0 to 1: the same for all poses. This and the next
   // two are 0 if no viewpoints are given, and lower the probability.
   float unseen_object;
@@ -1125,6 +1156,13 @@ hangpose_status hangpose_object_get_contact(const struct hangpose_object *object
                                             uint32_t index,
                                             struct hangpose_object_contact *contact,
                                             struct hangpose_detail *detail);
+
+// Writes detected symmetry `index` to `symmetry`. `index` is less than hangpose_object_info.symmetries. Set
+// symmetry->struct_size before the call. Returns HANGPOSE_OK, or an error.
+hangpose_status hangpose_object_get_symmetry(const struct hangpose_object *object,
+                                             uint32_t index,
+                                             struct hangpose_symmetry *symmetry,
+                                             struct hangpose_detail *detail);
 
 // Analyses `cloud` in `memory` and sets `*supporter` to the result, which stays in `memory`. `memory_size` is at
 // least hangpose_supporter_bytes for the size of `cloud`; memory for more points leaves room for later updates.

@@ -40,6 +40,7 @@ using limits = hangpose_limits;
 using object_info = hangpose_object_info;
 using object_site = hangpose_object_site;
 using object_contact = hangpose_object_contact;
+using object_symmetry = hangpose_symmetry;
 using supporter_info = hangpose_supporter_info;
 using supporter_site = hangpose_supporter_site;
 using supporter_contact = hangpose_supporter_contact;
@@ -239,6 +240,11 @@ class object {
     return internal::filled<object_contact>(
         [&](auto *out, auto *why) { return hangpose_object_get_contact(get(), index, out, why); });
   }
+  // Detected symmetry `index`, less than info()->symmetries.
+  result<object_symmetry> symmetry(std::uint32_t index) const noexcept {
+    return internal::filled<object_symmetry>(
+        [&](auto *out, auto *why) { return hangpose_object_get_symmetry(get(), index, out, why); });
+  }
   const hangpose_object *get() const noexcept { return handle_.get(); }
 
  private:
@@ -396,6 +402,14 @@ struct request : hangpose_request {
   request &avoid(view<const hangpose::hung> objects) noexcept {
     hung_count = internal::count(objects.size());
     hung = objects.data();
+    return *this;
+  }
+  // Gives the symmetries of the object, up to HANGPOSE_MAX_SYMMETRIES or none, in place of those that were
+  // detected. Set the struct_size of each.
+  request &with_symmetries(view<const object_symmetry> given) noexcept {
+    has_symmetries = 1;
+    symmetry_count = internal::count(given.size());
+    symmetries = given.data();
     return *this;
   }
 };

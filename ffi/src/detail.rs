@@ -128,6 +128,7 @@ mod tests {
             request(RequestError::Approach),
             request(RequestError::Scene { point: most, position: worst }),
             request(RequestError::Distinct),
+            request(RequestError::Symmetry { index: most }),
         ] {
             let text = failure.to_string();
             assert!(text.len() < HANGPOSE_MESSAGE_CHARS, "{} bytes: {text}", text.len());

@@ -53,7 +53,9 @@ pub use params::*;
 pub use pose::*;
 pub use predict::{hangpose_predict, hangpose_prediction};
 pub use region::*;
-pub use request::{HANGPOSE_MAX_HUNG, hangpose_hung, hangpose_request, hangpose_request_init};
+pub use request::{
+    HANGPOSE_MAX_HUNG, HANGPOSE_MAX_SYMMETRIES, hangpose_hung, hangpose_request, hangpose_request_init,
+};
 pub use sample::{hangpose_mesh_sample, hangpose_sample_bytes};
 pub use status::*;
 pub use supporter::*;

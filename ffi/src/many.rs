@@ -115,7 +115,9 @@ pub unsafe extern "C" fn hangpose_predict_many(
         check("poses", poses.cast_const())?;
         let hung = hung.list();
         // SAFETY: the caller vouches for the arrays, which are apart from what is written.
-        let request = unsafe { request.check(&hung) }?;
+        let symmetries = unsafe { request.symmetries() }?;
+        // SAFETY: as above.
+        let request = unsafe { request.check(&hung, symmetries.as_deref()) }?;
         let supporter = supporter.model();
         let models: heapless::Vec<&Object, HANGPOSE_MAX_HUNG> = shared.iter().map(Shared::model).collect();
         let (slots, memory) = pose_slots(memory, object_count, predict_bytes(&supporter.limits()))?;

@@ -9,6 +9,7 @@ use crate::params::hangpose_params;
 use crate::status::*;
 use core::ffi::c_void;
 use hangpose_core::Monitor;
+use hangpose_core::geometry::{MAX_FOLD, Symmetry};
 use hangpose_core::hanging::sites::ObjectCounts;
 use hangpose_core::hanging::{Object, ObjectPlaces};
 use hangpose_core::memory::Limits;
@@ -119,6 +120,8 @@ pub struct hangpose_object_info {
     pub sites: u32,
     /// Number of contact candidates; 0 with HANGPOSE_CANDIDATES_SITES.
     pub contacts: u32,
+    /// Number of symmetries that were detected; 0 with hangpose_params.voxels = 0.
+    pub symmetries: u32,
     /// Number of rays cast.
     pub rays: u64,
     /// Number of distance and inside-outside queries.
@@ -158,6 +161,7 @@ pub unsafe extern "C" fn hangpose_object_get_info(
             encircled: counts.encircled as u32,
             sites: counts.sites as u32,
             contacts: object.places().contacts().len() as u32,
+            symmetries: object.symmetries().len() as u32,
             rays: work.rays,
             distance_queries: work.distance_queries,
         })
@@ -274,4 +278,45 @@ pub unsafe extern "C" fn hangpose_object_get_contact(
     };
     // SAFETY: the caller vouches for the pointers.
     unsafe { get(object.cast::<ObjectHandle>(), contact, detail, read) }
+}
+
+/// Greatest hangpose_symmetry.fold.
+pub const HANGPOSE_MAX_FOLD: u32 = 360;
+
+const _: () = assert!(HANGPOSE_MAX_FOLD == MAX_FOLD);
+
+/// Turns of an object after which it looks as before, about an axis through its centre of mass.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hangpose_symmetry {
+    /// sizeof(hangpose_symmetry), set by the caller.
+    pub struct_size: u32,
+    /// 0 for a solid of revolution, which may turn by any angle; n, from 2 to HANGPOSE_MAX_FOLD, for turns by multiples
+    /// of an n-th of a full turn.
+    pub fold: u32,
+    /// x, y, z of the direction of the axis, in object coordinates; the sign is arbitrary. Its length is 1 where it was
+    /// detected; in a hangpose_request, any but zero.
+    pub axis: [f32; 3],
+}
+
+// SAFETY: `repr(C)` over numbers, `struct_size` first.
+unsafe impl Public for hangpose_symmetry {
+    const NAME: &'static str = "symmetry";
+}
+
+/// Writes detected symmetry `index` to `symmetry`. `index` is less than hangpose_object_info.symmetries. Set
+/// symmetry->struct_size before the call. Returns HANGPOSE_OK, or an error.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_object_get_symmetry(
+    object: *const hangpose_object,
+    index: u32,
+    symmetry: *mut hangpose_symmetry,
+    detail: *mut hangpose_detail,
+) -> hangpose_status {
+    let read = |object: &Object| {
+        let &Symmetry { axis, fold } = at(object.symmetries(), index)?;
+        Ok(hangpose_symmetry { struct_size: size_of::<hangpose_symmetry>() as u32, fold, axis: axis.into() })
+    };
+    // SAFETY: the caller vouches for the pointers.
+    unsafe { get(object.cast::<ObjectHandle>(), symmetry, detail, read) }
 }

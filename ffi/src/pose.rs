@@ -75,6 +75,9 @@ pub struct hangpose_pose {
     pub kind: hangpose_kind,
     /// Probability that the object hangs and stays, 0 to 1.
     pub probability: f32,
+    /// Probability that it also stays when gravity tilts by 21.8 degrees towards any side, 0 to 1. Among poses that are sure to
+    /// hang it tells which is the firmest.
+    pub robustness: f32,
     /// Share of the directions from which no camera looked at the object, 0 to 1: the same for all poses. This and the next
     /// two are 0 if no viewpoints are given, and lower the probability.
     pub unseen_object: f32,
@@ -151,6 +154,7 @@ impl From<&HangingPose> for hangpose_pose {
             answer.has_rest = 1;
             answer.kind = kind(rest.kind);
             answer.probability = rest.probability;
+            answer.robustness = rest.robustness;
             answer.unseen_object = rest.unseen.object;
             answer.unseen_shadow = rest.unseen.shadow;
             answer.unseen_supporter = rest.unseen.supporter;
@@ -199,6 +203,7 @@ impl hangpose_pose {
             has_rest: 0,
             kind: 0,
             probability: NAN,
+            robustness: NAN,
             unseen_object: NAN,
             unseen_shadow: NAN,
             unseen_supporter: NAN,

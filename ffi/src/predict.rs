@@ -175,7 +175,9 @@ pub unsafe extern "C" fn hangpose_predict(
         }
         let hung = hung.list();
         // SAFETY: the caller vouches for the arrays, which are apart from what is written.
-        let request = unsafe { request.check(&hung) }?;
+        let symmetries = unsafe { request.symmetries() }?;
+        // SAFETY: as above.
+        let request = unsafe { request.check(&hung, symmetries.as_deref()) }?;
         let (object, supporter) = (object.model(), supporter.model());
         let (slots, memory) = pose_slots(memory, pose_capacity, predict_bytes(&supporter.limits()))?;
         let none = Monitor::new();

@@ -1,19 +1,21 @@
-use crate::border::{DETAIL, Public, Region, check, check_size, elements, keep_apart, report, rows};
+use crate::border::{DETAIL, Public, Region, check, check_size, elements, inputs, keep_apart, report, rows};
 use crate::detail::hangpose_detail;
 use crate::failure::{Failure, HungFault, ObjectFault, Place};
 use crate::handle::Shared;
 use crate::kind::{hangpose_kind, kinds, mask};
-use crate::object::{ObjectHandle, hangpose_object};
+use crate::object::{HANGPOSE_MAX_FOLD, ObjectHandle, hangpose_object, hangpose_symmetry};
 use crate::pose::pose_of;
 use crate::region::{BY, ON, hangpose_region, region_place};
 use crate::status::*;
 use core::f32::consts::PI;
-use hangpose_core::geometry::{MAX_COORDINATE, Pose};
+use hangpose_core::geometry::{MAX_COORDINATE, Pose, Symmetry};
 use hangpose_core::hanging::{Approach, Distance, Hung, MAX_HUNG, Object, Request, RequestError};
 
 /// Greatest number of objects that hang already, hangpose_request.hung_count, and of objects that hang at once, those
 /// of hangpose_predict_many included. Of more, pass points of their surfaces as hangpose_request.scene_points.
 pub const HANGPOSE_MAX_HUNG: usize = 32;
+/// Greatest number of symmetries that are given, hangpose_request.symmetry_count.
+pub const HANGPOSE_MAX_SYMMETRIES: usize = 8;
 
 const _: () = assert!(HANGPOSE_MAX_HUNG == MAX_HUNG);
 
@@ -54,7 +56,7 @@ pub struct hangpose_request {
     /// Length of the way that is free, metres; 0 to 10.
     pub approach_length: f32,
     /// Two poses of the same kind differ by this distance of the centres of mass or by distinct_rotation, or by more,
-    /// metres; 0 to 10. Default: 0.02.
+    /// whichever way the object is turned by its symmetries; metres; 0 to 10. Default: 0.02.
     pub distinct_position: f32,
     /// Angle of the rotation from one pose to the other, radians; 0 to pi. Default: 0.35.
     pub distinct_rotation: f32,
@@ -62,6 +64,12 @@ pub struct hangpose_request {
     pub scene_point_count: u32,
     /// Number of objects that hang already; 0, the default, to HANGPOSE_MAX_HUNG.
     pub hung_count: u32,
+    /// 1 if the object has the symmetries in the array `symmetries` and no others; 0, the default, for those that were
+    /// detected, see hangpose_object_get_symmetry. Poses that differ by a symmetry, or by two about different axes one
+    /// after the other, are one pose.
+    pub has_symmetries: u32,
+    /// Number of symmetries, 0 to HANGPOSE_MAX_SYMMETRIES. With has_symmetries = 1, 0 says that the object has none.
+    pub symmetry_count: u32,
     /// The part of the supporter that carries the object: at least half of its weight rests there. In supporter
     /// coordinates. Default: everywhere.
     pub on: hangpose_region,
@@ -75,6 +83,8 @@ pub struct hangpose_request {
     /// Array of hung_count objects that hang on the supporter already. As the scene, with their exact shapes. May be
     /// null if hung_count is 0.
     pub hung: *const hangpose_hung,
+    /// Array of symmetry_count symmetries. May be null if symmetry_count is 0.
+    pub symmetries: *const hangpose_symmetry,
 }
 
 // SAFETY: `repr(C)` over numbers and pointers, `struct_size` first.
@@ -105,7 +115,8 @@ pub unsafe extern "C" fn hangpose_request_init(
 impl hangpose_request {
     /// Anything anywhere.
     pub(crate) fn any() -> Self {
-        let Request { allow, prefer, on: _, by: _, approach: _, scene: _, hung: _, distinct } = Request::ANY;
+        let Request { allow, prefer, on: _, by: _, approach: _, scene: _, hung: _, distinct, symmetries: _ } =
+            Request::ANY;
         Self {
             struct_size: size_of::<Self>() as u32,
             allow: mask(allow),
@@ -118,19 +129,54 @@ impl hangpose_request {
             distinct_rotation: distinct.rotation,
             scene_point_count: 0,
             hung_count: 0,
+            has_symmetries: 0,
+            symmetry_count: 0,
             on: hangpose_region::EVERYWHERE,
             by: hangpose_region::EVERYWHERE,
             scene_points: core::ptr::null(),
             hung: core::ptr::null(),
+            symmetries: core::ptr::null(),
         }
     }
 
-    /// The request as the core takes it, each value checked. `hung` is what [`HungObjects::list`] gives for it.
+    /// The symmetries that are given, if any are.
     ///
     /// # Safety
     ///
     /// The obligations of the caller, see `border`.
-    pub(crate) unsafe fn check<'a>(&'a self, hung: &'a [Hung<'a>]) -> Result<Request<'a>, Failure> {
+    pub(crate) unsafe fn symmetries(
+        &self,
+    ) -> Result<Option<heapless::Vec<Symmetry, HANGPOSE_MAX_SYMMETRIES>>, Failure> {
+        const COUNT: &str = "request.symmetry_count";
+        match (self.has_symmetries, self.symmetry_count as usize) {
+            (0, _) => Ok(None),
+            (1, 0) => Ok(Some(heapless::Vec::new())),
+            (1, count) if count > HANGPOSE_MAX_SYMMETRIES => {
+                Err(Failure::Count { field: COUNT, count, most: HANGPOSE_MAX_SYMMETRIES })
+            }
+            (1, _) => {
+                check(SYMMETRIES, self.symmetries)?;
+                // SAFETY: those of this function.
+                let given = unsafe { inputs(COUNT, self.symmetries, self.symmetry_count) }?;
+                let to_core =
+                    |given: &hangpose_symmetry| Symmetry { axis: given.axis.into(), fold: given.fold };
+                Ok(Some(given.iter().map(to_core).collect()))
+            }
+            (value, _) => Err(Failure::Choice { field: "request.has_symmetries", value, most: 1 }),
+        }
+    }
+
+    /// The request as the core takes it, each value checked. `hung` is what [`HungObjects::list`] gives for it, and
+    /// `symmetries` what [`symmetries`](Self::symmetries) does.
+    ///
+    /// # Safety
+    ///
+    /// The obligations of the caller, see `border`.
+    pub(crate) unsafe fn check<'a>(
+        &'a self,
+        hung: &'a [Hung<'a>],
+        symmetries: Option<&'a [Symmetry]>,
+    ) -> Result<Request<'a>, Failure> {
         let approach = match self.has_approach {
             0 => None,
             1 => Some(Approach {
@@ -157,6 +203,7 @@ impl hangpose_request {
             scene,
             hung,
             distinct: Distance { position: self.distinct_position, rotation: self.distinct_rotation },
+            symmetries,
         };
         match request.validate() {
             Ok(()) => Ok(request),
@@ -172,10 +219,14 @@ impl hangpose_request {
             self.scene_point_count as usize,
         );
         let hung = Region::read("request.hung", self.hung, self.hung_count as usize);
-        let own = [Region::read("request", self, 1), scene, hung];
+        let symmetries = Region::read(SYMMETRIES, self.symmetries, self.symmetry_count as usize);
+        let own = [Region::read("request", self, 1), scene, hung, symmetries];
         own.into_iter().chain(self.on.regions(&ON)).chain(self.by.regions(&BY))
     }
 }
+
+/// Name of the array of symmetries in messages.
+const SYMMETRIES: &str = "request.symmetries";
 
 /// The objects of a request that hang already, each in use as long as this exists.
 pub(crate) struct HungObjects<'a>(heapless::Vec<(Shared<'a, Object<'static>>, Pose), HANGPOSE_MAX_HUNG>);
@@ -255,6 +306,15 @@ fn request_place(error: RequestError, request: &Request) -> Place {
         },
         RequestError::Scene { point, position } => {
             Place::of("request.scene_points").coordinate(Some(point), position)
+        }
+        RequestError::Symmetry { index } => {
+            let fold = request.symmetries.and_then(|given| given.get(index)).map_or(0, |given| given.fold);
+            let place = if fold == 1 || fold > HANGPOSE_MAX_FOLD {
+                outside("request.symmetries.fold", fold as f32, HANGPOSE_MAX_FOLD as f32)
+            } else {
+                Place::of("request.symmetries.axis")
+            };
+            Place { index: Some(index), ..place }
         }
         RequestError::Distinct => match request.distinct {
             Distance { position, .. } if !(0.0..=MAX_LENGTH).contains(&position) => {

@@ -78,7 +78,7 @@ fn every_number_of_a_pose_reaches_its_field() {
     // The contacts of a rest are private, so they come from a prediction.
     let mut rest = a_rest();
     (rest.pose, rest.margin) = (rest_pose, margin);
-    (rest.sinking, rest.clearance, rest.probability) = (0.31, 0.32, 0.33);
+    (rest.sinking, rest.clearance, rest.probability, rest.robustness) = (0.31, 0.32, 0.33, 0.36);
     (rest.kind, rest.tolerance) = (Kind::Capped, Tolerance { position: 0.37, rotation: 0.38 });
     rest.unseen = Unseen {
         object: 0.34,
@@ -96,7 +96,8 @@ fn every_number_of_a_pose_reaches_its_field() {
     assert_eq!((c.rest_position, c.rest_quaternion), ([4.0, 5.0, 6.0], xyzw(&rest_pose)));
     assert_eq!((c.unseen_object, c.unseen_shadow, c.unseen_supporter), (0.34, 0.35, 0.36));
     assert_eq!((c.object_view, c.supporter_view), ([0.6, 0.8, 0.0], [0.0, 0.6, 0.8]));
-    assert_eq!((c.has_rest, c.sinking, c.clearance, c.probability), (1, 0.31, 0.32, 0.33));
+    assert_eq!((c.has_rest, c.sinking, c.clearance), (1, 0.31, 0.32));
+    assert_eq!((c.probability, c.robustness), (0.33, 0.36));
     assert_eq!((c.kind, c.tolerance_position, c.tolerance_rotation), (HANGPOSE_KIND_CAPPED, 0.37, 0.38));
     let m = c.margin;
     assert_eq!((m.tilts, m.least_tilt), (margin.tilts, 0.11));
@@ -130,13 +131,14 @@ fn a_pose_without_rest_and_match_says_so() {
     assert_eq!((c.position, c.quaternion), ([0.0; 3], [0.0, 0.0, 0.0, 1.0]));
     assert_eq!((c.has_rest, c.kind, c.contact_count, c.is_matched), (0, 0, 0, 0));
     let (p, q, m) = (c.rest_position, c.rest_quaternion, c.margin);
-    let rest = [c.probability, c.sinking, c.clearance, m.least_tilt, m.jolt_time, m.tilted_sinking]
-        .into_iter()
-        .chain([m.escape_rise, m.escape_ratio, m.knock_speed, m.centre_of_mass_radius])
-        .chain([c.tolerance_position, c.tolerance_rotation])
-        .chain(p)
-        .chain(q)
-        .chain(m.tilts);
+    let rest =
+        [c.probability, c.robustness, c.sinking, c.clearance, m.least_tilt, m.jolt_time, m.tilted_sinking]
+            .into_iter()
+            .chain([m.escape_rise, m.escape_ratio, m.knock_speed, m.centre_of_mass_radius])
+            .chain([c.tolerance_position, c.tolerance_rotation])
+            .chain(p)
+            .chain(q)
+            .chain(m.tilts);
     assert!(rest.chain([c.boundary, c.contact_area, c.total]).all(f32::is_nan));
     assert!(c.contacts.iter().all(|x| (x.position, x.normal, x.force) == ([0.0; 3], [0.0; 3], 0.0)));
     assert_eq!((c.object_site, c.support_site), (HANGPOSE_NO_INDEX, HANGPOSE_NO_INDEX));

@@ -393,6 +393,35 @@ fn distinct_poses_differ_by_what_was_asked_for() {
     assert!(far.found.pose_count < scene.predict(null()).found.pose_count);
 }
 
+#[test]
+fn a_ring_is_hung_once_whichever_way_it_is_turned() {
+    let scene = Scene::new();
+    let empty =
+        hangpose_symmetry { struct_size: size_of::<hangpose_symmetry>() as u32, fold: 9, axis: [0.0; 3] };
+    let symmetry = |index, symmetry: &mut hangpose_symmetry| {
+        // SAFETY: the pointers lead to valid values.
+        unsafe { hangpose_object_get_symmetry(scene.ring.model, index, symmetry, null_mut()) }
+    };
+    let mut found = [empty; 2];
+    assert_eq!([0, 1].map(|index| symmetry(index as u32, &mut found[index])), [HANGPOSE_OK; 2]);
+    assert_eq!(symmetry(2, &mut empty.clone()), HANGPOSE_ERROR_INDEX);
+    let axis = |index: usize| found[index].axis.map(|x| libm::roundf(x * 100.0).abs());
+    assert_eq!((found[0].fold, axis(0)), (0, [0.0, 0.0, 100.0]));
+    assert_eq!((found[1].fold, axis(1)[2]), (2, 0.0));
+
+    let count = |request: hangpose_request| scene.predict(&request).found.pose_count;
+    let given = hangpose_request {
+        has_symmetries: 1,
+        symmetry_count: 2,
+        symmetries: found.as_ptr(),
+        distinct_rotation: 0.05,
+        ..request()
+    };
+    let detected = count(hangpose_request { has_symmetries: 0, ..given });
+    assert_eq!(count(given), detected);
+    assert!(count(hangpose_request { symmetry_count: 0, ..given }) > detected);
+}
+
 /// What is wrong with a request: the status, the field, the index and the value.
 type Wrong = (hangpose_status, &'static str, u32, f64);
 
@@ -440,6 +469,27 @@ fn broken_numbers_are_named() {
     refuse(
         hangpose_request { distinct_rotation: f32::INFINITY, ..good },
         (value, "request.distinct_rotation", ANY, f64::INFINITY),
+    );
+    refuse(hangpose_request { has_symmetries: 2, ..good }, (value, "request.has_symmetries", ANY, 2.0));
+    let fine = hangpose_symmetry {
+        struct_size: size_of::<hangpose_symmetry>() as u32,
+        fold: 0,
+        axis: [0.0, 0.0, 2.0],
+    };
+    let turns = |second: hangpose_symmetry, wrong| {
+        let both = [fine, second];
+        let symmetries = both.as_ptr();
+        refuse(hangpose_request { has_symmetries: 1, symmetry_count: 2, symmetries, ..good }, wrong);
+    };
+    turns(hangpose_symmetry { fold: 1, ..fine }, (value, "request.symmetries.fold", 1, 1.0));
+    turns(hangpose_symmetry { axis: [0.0; 3], ..fine }, (value, "request.symmetries.axis", 1, NONE));
+    turns(
+        hangpose_symmetry { struct_size: 0, ..fine },
+        (HANGPOSE_ERROR_STRUCT_SIZE, "symmetry.struct_size", ANY, 0.0),
+    );
+    refuse(
+        hangpose_request { has_symmetries: 1, symmetry_count: 9, symmetries: &fine, ..good },
+        (count, "request.symmetry_count", ANY, 9.0),
     );
     let points = [[0.0; 3], [0.0, f32::NAN, 0.0]];
     refuse(
@@ -507,6 +557,10 @@ fn broken_pointers_are_named() {
         (HANGPOSE_ERROR_MISALIGNED, "request.scene_points", ANY, NONE),
     );
     refuse(hangpose_request { hung_count: 1, ..good }, (null_error, "request.hung", ANY, NONE));
+    refuse(
+        hangpose_request { has_symmetries: 1, symmetry_count: 1, ..good },
+        (null_error, "request.symmetries", ANY, NONE),
+    );
     let here = near(&points, 0.1);
     let by = |by: hangpose_region, wrong| refuse(hangpose_request { by, ..good }, wrong);
     by(hangpose_region { points: null(), ..here }, (null_error, "request.by.points", ANY, NONE));
@@ -568,6 +622,10 @@ fn what_is_written_must_be_apart_from_the_request() {
     refuse(
         hangpose_request { scene_point_count: 1, scene_points: inside.cast(), ..good },
         "request.scene_points",
+    );
+    refuse(
+        hangpose_request { has_symmetries: 1, symmetry_count: 1, symmetries: inside.cast(), ..good },
+        "request.symmetries",
     );
     let on = hangpose_region { points: inside.cast(), ..near(&[[0.0; 3]], 0.1) };
     refuse(hangpose_request { on, ..good }, "request.on.points");

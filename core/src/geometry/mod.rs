@@ -6,12 +6,14 @@
 //! - `shapes/`: what a caller hands in, meshes and clouds, and what follows from it alone: bounding box, area, mass properties;
 //! - `queries/`: trees over triangles and points, for rays, closest points, winding numbers and neighbours; the exit from a convex hull;
 //! - `distance_field/`: the signed distance of a surface, tabulated on a sparse grid;
-//! - `statistics/`: clusters and principal directions of points.
+//! - `statistics/`: clusters and principal directions of points;
+//! - `symmetry/`: turns after which an object looks as before.
 
 mod distance_field;
 mod queries;
 mod shapes;
 mod statistics;
+mod symmetry;
 mod vector;
 
 pub use distance_field::DistanceField;
@@ -19,6 +21,10 @@ pub(crate) use queries::PointTreeSlots;
 pub use queries::{Neighbour, PointTree, Surface, hull};
 pub use shapes::{Aabb, Cloud, CloudError, MAX_COUNT, MassProperties, Mesh, MeshError};
 pub(crate) use shapes::{closest_point_on_triangle, scaled_normal};
-pub(crate) use statistics::{least_eigenvector, linked_cluster, mean_shift, principal_direction};
+pub(crate) use statistics::{
+    eigenvectors, least_eigenvector, linked_cluster, mean_shift, principal_direction,
+};
+pub use symmetry::{MAX_FOLD, Symmetry};
+pub(crate) use symmetry::{Symmetries, least_angle};
 pub use vector::{MAX_COORDINATE, Point, Pose, Vector};
 pub(crate) use vector::{any_perpendicular, fibonacci_direction, rotate_about, unit_or};

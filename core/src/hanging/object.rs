@@ -3,7 +3,7 @@
 use super::AnalysisError;
 use super::method::{self, ObjectPlaces, ObjectSlots};
 use super::samples::ObjectSamples;
-use crate::geometry::{DistanceField, MassProperties, Mesh, Point, Surface, Vector};
+use crate::geometry::{DistanceField, MassProperties, Mesh, Point, Surface, Symmetries, Symmetry, Vector};
 use crate::mechanics::{Body, Views};
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
@@ -19,6 +19,7 @@ pub struct Object<'m> {
     reach: f32,
     mass: MassProperties,
     centre_of_mass: Point,
+    symmetries: Symmetries,
     views: Views<'m>,
     work: Work,
     stopped: Option<Stop>,
@@ -88,6 +89,9 @@ impl<'m> Object<'m> {
 
         let sample_mean = mean_of(points);
         let centre_of_mass = params.resolve_centre_of_mass(sample_mean, mass.volume_centroid);
+        let symmetries = field.as_ref().map_or_else(Symmetries::default, |field| {
+            Symmetries::find(&mass.inertia, &centre_of_mass, field, points)
+        });
         let samples = ObjectSamples { surface: &surface, points, normals, centre_of_mass, params };
         let (places, stopped) = slots.find(&samples, &mut meter, scratch)?;
         if stopped == Some(Stop::Cancelled) {
@@ -96,7 +100,7 @@ impl<'m> Object<'m> {
         let corners = surface.triangles().iter().flatten();
         let reach = corners.map(|corner| (corner - centre_of_mass).norm()).fold(0.0, f32::max);
         let work = meter.work;
-        Ok(Self { surface, field, places, reach, mass, centre_of_mass, views, work, stopped })
+        Ok(Self { surface, field, places, reach, mass, centre_of_mass, symmetries, views, work, stopped })
     }
 
     /// The object as mechanics sees it, if it was analysed with voxels.
@@ -134,6 +138,12 @@ impl<'m> Object<'m> {
     /// The centre of mass that the poses are made for, by [`Params::centre_of_mass`]; metres.
     pub fn centre_of_mass(&self) -> Point {
         self.centre_of_mass
+    }
+
+    /// Turns after which the object looks as before, as far as they were detected: of an object that was analysed without
+    /// [`voxels`](Params::voxels) none are.
+    pub fn symmetries(&self) -> &[Symmetry] {
+        self.symmetries.as_slice()
     }
 
     /// Where the object may hang, by the method that it was analysed with.

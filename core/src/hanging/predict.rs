@@ -62,6 +62,7 @@ pub fn predict<'p>(
         centre_of_mass: object.centre_of_mass(),
         body: body.as_ref(),
         support: supporter.support(),
+        symmetries: request.symmetries_of(object),
         request,
         params,
     };

@@ -2,7 +2,7 @@
 
 use super::Object;
 use super::region::{Region, RegionError};
-use crate::geometry::{MAX_COORDINATE, Pose, Vector};
+use crate::geometry::{MAX_COORDINATE, MAX_FOLD, Pose, Symmetry, Vector};
 use crate::mechanics::{Kind, Kinds};
 use core::fmt;
 
@@ -25,8 +25,11 @@ pub struct Request<'a> {
     pub scene: &'a [[f32; 3]],
     /// Objects that hang on the supporter already. As the scene, with their exact shapes.
     pub hung: &'a [Hung<'a>],
-    /// How much two poses of the same kind differ at least.
+    /// How much two poses of the same kind differ at least, whichever way the object is turned by its symmetries.
     pub distinct: Distance,
+    /// Turns after which the object is the same, so that poses that differ by one are one pose; `None` for those that were
+    /// detected, [`Object::symmetries`]. One after another, two of them about different axes may be made.
+    pub symmetries: Option<&'a [Symmetry]>,
 }
 
 /// A straight way of the object to its release pose, free of collisions.
@@ -75,6 +78,7 @@ impl<'a> Request<'a> {
         scene: &[],
         hung: &[],
         distinct: Distance { position: 0.02, rotation: 0.35 },
+        symmetries: None,
     };
 
     /// Checks every value.
@@ -102,7 +106,19 @@ impl<'a> Request<'a> {
         if !((0.0..=10.0).contains(&position) && (0.0..=core::f32::consts::PI).contains(&rotation)) {
             return Err(RequestError::Distinct);
         }
+        let given = self.symmetries.unwrap_or_default();
+        if let Some(index) = given.iter().position(|symmetry| !symmetry.is_valid()) {
+            return Err(RequestError::Symmetry { index });
+        }
         Ok(())
+    }
+
+    /// The symmetries that poses are compared by: those that are given, or else those of the object.
+    pub fn symmetries_of<'o>(&self, object: &'o Object) -> &'o [Symmetry]
+    where
+        'a: 'o,
+    {
+        self.symmetries.unwrap_or_else(|| object.symmetries())
     }
 
     /// How much the rank of a pose of a kind counts, 0 to 1: a pose that holds with probability p is ranked by p times this.
@@ -147,6 +163,11 @@ pub enum RequestError {
     },
     /// A distance between poses is negative, too large, or not a number.
     Distinct,
+    /// A symmetry has no axis, or a fold that is 1 or too large.
+    Symmetry {
+        /// Index of the symmetry.
+        index: usize,
+    },
 }
 
 impl fmt::Display for RequestError {
@@ -164,6 +185,10 @@ impl fmt::Display for RequestError {
             ),
             Self::Distinct => f.write_str(
                 "the distance between poses must be 0 to 10 metres and 0 to π radians",
+            ),
+            Self::Symmetry { index } => write!(
+                f,
+                "symmetry {index} of the object needs an axis that is not zero and a fold of 2 to {MAX_FOLD}, or 0 for any angle"
             ),
         }
     }

@@ -1,7 +1,7 @@
 //! What a method's search knows of the object and the supporter, beside the places on them.
 
 use super::request::Request;
-use crate::geometry::{Point, Surface};
+use crate::geometry::{Point, Surface, Symmetry};
 use crate::mechanics::{Body, Support};
 use crate::params::Params;
 
@@ -16,6 +16,8 @@ pub(super) struct Scene<'a> {
     pub(super) body: Option<&'a Body<'a>>,
     /// The supporter as mechanics sees it, with its points.
     pub(super) support: &'a Support<'a>,
+    /// Turns of the object that make no other pose.
+    pub(super) symmetries: &'a [Symmetry],
     pub(super) request: &'a Request<'a>,
     pub(super) params: &'a Params,
 }

@@ -2,7 +2,7 @@
 
 use super::sites::Cost;
 use super::*;
-use crate::geometry::{Cloud, Point, Pose, Vector};
+use crate::geometry::{Cloud, Point, Pose, Symmetry, Vector};
 use crate::mechanics::{Fate, Kind};
 use crate::memory::{Limits, OutOfMemory};
 use crate::test_shapes::{self, Shape};
@@ -711,5 +711,49 @@ fn no_room_for_poses_is_no_rejection() {
             let found = predict(object, supporter, &params, &mut [], &Monitor::new()).unwrap();
             assert_eq!((found.poses.len(), found.rejection), (0, None));
         }
+    });
+}
+
+#[test]
+fn poses_that_differ_by_a_symmetry_are_one() {
+    let scene = Scene::ring_on_peg(0.4);
+    let params = Params { firm_enough: 12, ..product() };
+    scene.analyse(&params, &Monitor::new(), |object, supporter| {
+        let folds: Vec<u32> = object.symmetries().iter().map(|symmetry| symmetry.fold).collect();
+        assert_eq!(folds, [0, 2]);
+        let mut memory = vec![0; predict_bytes(&supporter.limits())];
+        let mut hang = |symmetries| {
+            let mut poses = [HangingPose::default(); 20];
+            let request = Request { symmetries, ..Request::ANY };
+            let monitor = Monitor::new();
+            let found =
+                super::predict(object, supporter, &request, &params, &mut poses, &mut memory, &monitor);
+            found.unwrap().poses.to_vec()
+        };
+        // Pairs of one kind at one place whose ring has the same axis, which the ring does not tell apart.
+        let same = |poses: &[HangingPose]| {
+            let rests: Vec<Rest> = poses.iter().map(|pose| pose.rest.unwrap()).collect();
+            let Distance { position, rotation } = Request::ANY.distinct;
+            let is_same = |a: &Rest, b: &Rest| {
+                let apart = a.pose * object.centre_of_mass() - b.pose * object.centre_of_mass();
+                let angle = degrees_between_lines(&(a.pose * Vector::z()), &(b.pose * Vector::z()));
+                // What is just at the limit may be either.
+                a.kind == b.kind && apart.norm() < position - 1e-4 && angle < rotation.to_degrees() - 0.5
+            };
+            let of = |index: usize, rest: &Rest| {
+                rests[..index].iter().filter(|other| is_same(other, rest)).count()
+            };
+            rests.iter().enumerate().map(|(index, rest)| of(index, rest)).sum::<usize>()
+        };
+        let detected = hang(None);
+        assert!(detected.len() > 1 && same(&detected) == 0, "{} of {}", same(&detected), detected.len());
+        let none = hang(Some(&[]));
+        assert!(same(&none) > 0 && none.len() > detected.len());
+        let given = hang(Some(object.symmetries()));
+        assert_eq!(given, detected);
+        // About an axis that is none of the ring's, what differs by a turn about its own axis stays different.
+        assert!(same(&hang(Some(&[Symmetry { axis: Vector::x(), fold: 2 }]))) > 0);
+        let broken = Request { symmetries: Some(&[Symmetry { axis: Vector::x(), fold: 1 }]), ..Request::ANY };
+        assert_eq!(broken.validate(), Err(RequestError::Symmetry { index: 0 }));
     });
 }

@@ -62,6 +62,7 @@ static void null_and_misaligned(void) {
   hangpose_supporter_site supporter_site = {.struct_size = sizeof supporter_site};
   hangpose_object_contact object_contact = {.struct_size = sizeof object_contact};
   hangpose_supporter_contact supporter_contact = {.struct_size = sizeof supporter_contact};
+  hangpose_symmetry symmetry = {.struct_size = sizeof symmetry};
   hangpose_object *o;
   hangpose_supporter *s;
   hangpose_monitor monitor;
@@ -94,6 +95,9 @@ static void null_and_misaligned(void) {
     REFUSED(hangpose_object_get_contact(bad[i], 0, &object_contact, &detail));
     REFUSED(hangpose_object_get_contact(object, 0, bad[i], &detail));
     REFUSED(hangpose_object_get_contact(object, UINT32_MAX, &object_contact, &detail));
+    REFUSED(hangpose_object_get_symmetry(bad[i], 0, &symmetry, &detail));
+    REFUSED(hangpose_object_get_symmetry(object, 0, bad[i], &detail));
+    REFUSED(hangpose_object_get_symmetry(object, UINT32_MAX, &symmetry, &detail));
     REFUSED(hangpose_supporter_get_info(bad[i], &supporter_info, &detail));
     REFUSED(hangpose_supporter_get_info(supporter, bad[i], &detail));
     REFUSED(hangpose_supporter_get_site(bad[i], 0, &supporter_site, &detail));
@@ -159,6 +163,7 @@ static void struct_sizes(void) {
     hangpose_supporter_site supporter_site = {.struct_size = sizes[i]};
     hangpose_object_contact object_contact = {.struct_size = sizes[i]};
     hangpose_supporter_contact supporter_contact = {.struct_size = sizes[i]};
+    hangpose_symmetry symmetry = {.struct_size = sizes[i]};
     hangpose_pose pose;
     m.struct_size = c.struct_size = p.struct_size = l.struct_size = sizes[i];
     REFUSED(hangpose_params_init(&p, sizes[i], HANGPOSE_PROFILE_DEFAULT, HANGPOSE_ABI_VERSION, &detail));
@@ -177,6 +182,7 @@ static void struct_sizes(void) {
     REFUSED(hangpose_supporter_get_site(supporter, 0, &supporter_site, &detail));
     REFUSED(hangpose_object_get_contact(object, 0, &object_contact, &detail));
     REFUSED(hangpose_supporter_get_contact(supporter, 0, &supporter_contact, &detail));
+    REFUSED(hangpose_object_get_symmetry(object, 0, &symmetry, &detail));
     REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizeof pose,
                              1, &found, &detail));
     REFUSED(hangpose_predict(object, supporter, NULL, &params, work, predict_size, NULL, &pose, sizes[i], 1,

@@ -55,6 +55,7 @@ int main() {
   CHECK(ring && ring->info() && ring->info()->is_closed == 1);
   hangpose::object moved = *std::move(ring);
   CHECK(moved.get() != nullptr && moved.contact(0) && !moved.contact(1000) && !moved.site(0));
+  CHECK(moved.info()->symmetries == 2 && moved.symmetry(0)->fold == 0 && !moved.symmetry(2));
   CHECK(ring->get() == nullptr && !ring->info() && ring->info().error().status() == HANGPOSE_ERROR_NULL);
   std::vector<unsigned char> room(HANGPOSE_SUPPORTER_BYTES(PEG_POINTS));
   auto peg =

@@ -5,7 +5,7 @@ use super::json::{self, InspectedObject, InspectedSupporter};
 use super::{InspectArguments, Role, terminal};
 use anyhow::Result;
 use hangpose::files::{self, MeshFile, SupporterFile};
-use hangpose::geometry::{MassProperties, Vector};
+use hangpose::geometry::{MassProperties, Symmetry, Vector};
 use hangpose::hanging::{ObjectPlaces, SupporterPlaces};
 use hangpose::{CentreOfMass, Monitor, analyze_object, analyze_supporter};
 use std::process::ExitCode;
@@ -46,6 +46,7 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
         scale_warning,
         mass: *object.mass(),
         centre_of_mass: object.centre_of_mass().into(),
+        symmetries: json::symmetries(&object),
         counts: object.places().into(),
         sites: json::sites(object.places().sites()),
         contacts: object.places().contacts(),
@@ -77,6 +78,10 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
         None => "volume          none: the mesh is open, or some of its triangles face inwards\n".into(),
     };
     text += &format!("area            {:.1} cm2\n", mass.area * 1e4);
+    for Symmetry { axis, fold } in object.symmetries() {
+        let turns = if *fold == 0 { "any turn".into() } else { format!("turns by 1/{fold}") };
+        text += &format!("symmetry        {turns} about {}\n", direction(axis));
+    }
     text += &match object.places() {
         ObjectPlaces::Sites { counts, .. } => format!(
             "contact points  {}, in {} clusters, {} with free space, {} encircled, {} different\n",

@@ -2,10 +2,10 @@
 
 use super::counts::{Counts, ObjectCounts, SupporterCounts};
 use hangpose::Params;
-use hangpose::geometry::MassProperties;
+use hangpose::geometry::{self, MassProperties};
 use hangpose::hanging::contacts::{ObjectContact, SupportContact};
 use hangpose::hanging::sites::{Cost, HangingSite, SupportSite};
-use hangpose::hanging::{HangingPose, Rejection, Stage, Tolerance};
+use hangpose::hanging::{HangingPose, Object, Rejection, Stage, Tolerance};
 use hangpose::mechanics::{Contact, Kind, Margin, Unseen};
 use serde::Serialize;
 use serde_json::Value;
@@ -19,6 +19,7 @@ pub(super) struct Prediction<'a> {
     /// Number of copies of the object that shall hang at once. With more than one, each pose is for one of them.
     pub(super) count: usize,
     pub(super) poses: Vec<Pose<'a>>,
+    pub(super) symmetries: Vec<Symmetry>,
     pub(super) rejection: Option<Reason>,
     pub(super) stats: Stats,
     pub(super) params: &'a Params,
@@ -48,6 +49,17 @@ pub(super) struct Pose<'a> {
     cost: Option<Cost>,
     object_site: Option<Site<'a, HangingSite>>,
     supporter_site: Option<Site<'a, SupportSite>>,
+}
+
+/// Turns of the object after which it is the same, so that poses that differ by one are one pose.
+#[derive(Serialize)]
+pub(super) struct Symmetry {
+    /// Direction of the axis, in the object frame.
+    axis: [f32; 3],
+    /// Point on the axis: the centre of mass, in the object frame.
+    point: [f32; 3],
+    /// Number of turns that make a full one; null for a solid of revolution, which may turn by any angle.
+    fold: Option<u32>,
 }
 
 /// A site with its index among the sites of the object or the supporter.
@@ -111,6 +123,7 @@ pub(super) struct InspectedObject<'a> {
     pub(super) scale_warning: Option<String>,
     pub(super) mass: MassProperties,
     pub(super) centre_of_mass: [f32; 3],
+    pub(super) symmetries: Vec<Symmetry>,
     pub(super) counts: ObjectCounts,
     pub(super) sites: Vec<Site<'a, HangingSite>>,
     pub(super) contacts: &'a [ObjectContact],
@@ -174,6 +187,17 @@ impl<'a> Pose<'a> {
             supporter_site: matched.map(|matched| site(supporter, matched.support_site)),
         }
     }
+}
+
+/// The symmetries of an object that were detected.
+pub(super) fn symmetries(object: &Object) -> Vec<Symmetry> {
+    let point = object.centre_of_mass().into();
+    let symmetry = |&geometry::Symmetry { axis, fold }: &geometry::Symmetry| Symmetry {
+        axis: axis.into(),
+        point,
+        fold: (fold > 0).then_some(fold),
+    };
+    object.symmetries().iter().map(symmetry).collect()
 }
 
 /// The site with this index.

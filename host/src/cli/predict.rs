@@ -111,6 +111,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
                     Pose::new(rank, pose, object.places().sites(), supporter.places().sites())
                 })
                 .collect(),
+            symmetries: json::symmetries(&object),
             rejection: found.rejection.as_ref().map(Reason::from),
             stats: Stats {
                 seconds,

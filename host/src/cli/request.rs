@@ -225,6 +225,7 @@ impl Wishes {
             scene: &self.scene,
             hung: &[],
             distinct: self.distinct,
+            symmetries: None,
         };
         match request.validate() {
             Ok(()) => Ok(request),
@@ -242,6 +243,8 @@ impl Wishes {
             RequestError::Approach => "--approach",
             RequestError::Scene { .. } => "--scene",
             RequestError::Distinct => "--distinct",
+            // The command gives none.
+            RequestError::Symmetry { .. } => "symmetries",
         }
     }
 }

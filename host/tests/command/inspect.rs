@@ -97,6 +97,26 @@ fn people_read_the_same_as_programs() {
 }
 
 #[test]
+fn symmetries_are_told() {
+    let scene = Scene::new();
+    // The ring with its weight may make half a turn about the line from one to the other.
+    for (object, axes) in [(scene.ring.clone(), vec![Some(2)]), (sample("mug.obj"), vec![])] {
+        let seen = run!("inspect", object, "--json").json();
+        let symmetries = seen["symmetries"].as_array().unwrap();
+        let folds: Vec<_> = symmetries.iter().map(|symmetry| symmetry["fold"].as_u64()).collect();
+        assert_eq!(folds, axes);
+        for symmetry in symmetries {
+            assert!((distance(numbers(&symmetry["axis"]), [0.0; 3]) - 1.0).abs() < 1e-5);
+            assert_eq!(symmetry["point"], seen["centre_of_mass"]);
+        }
+        let text = run!("inspect", object).stdout;
+        assert_eq!(text.matches("\nsymmetry        ").count(), symmetries.len(), "{text}");
+        let document = scene.predict_with(&object, &scene.peg, &[]);
+        assert_eq!(document["symmetries"], seen["symmetries"]);
+    }
+}
+
+#[test]
 fn open_and_inverted_meshes_are_reported() {
     let scene = Scene::new();
     let (vertices, mut triangles) = shapes::weighted_ring();

@@ -15,7 +15,7 @@ fn the_document_has_the_fields_that_programs_read() {
     let mut found = keys(&document);
     found.sort_unstable();
     assert_eq!(document["count"], 1);
-    assert_eq!(found, ["count", "params", "poses", "rejection", "schema", "stats"]);
+    assert_eq!(found, ["count", "params", "poses", "rejection", "schema", "stats", "symmetries"]);
 
     let stats = &document["stats"];
     for stage in ["read", "object", "supporter", "matching", "total"] {

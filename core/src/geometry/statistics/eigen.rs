@@ -6,9 +6,15 @@ use nalgebra::Matrix3;
 /// Sweeps of cyclic Jacobi. It converges quadratically: six exceed `f32`'s precision for any 3x3 matrix.
 const SWEEPS: usize = 6;
 
-/// The unit eigenvector of the least eigenvalue of a symmetric matrix, of either sign: cyclic Jacobi rotations
-/// (Golub and Van Loan, "Matrix Computations", 8.5), which are as accurate as the matrix and never fail.
-pub(crate) fn least_eigenvector(mut m: Matrix3<f32>) -> Vector {
+/// The unit eigenvector of the least eigenvalue of a symmetric matrix, of either sign.
+pub(crate) fn least_eigenvector(m: Matrix3<f32>) -> Vector {
+    let (values, vectors) = eigenvectors(m);
+    vectors[values.imin()]
+}
+
+/// The eigenvalues of a symmetric matrix, and their unit eigenvectors, of either sign and at right angles: cyclic Jacobi
+/// rotations (Golub and Van Loan, "Matrix Computations", 8.5), which are as accurate as the matrix and never fail.
+pub(crate) fn eigenvectors(mut m: Matrix3<f32>) -> (Vector, [Vector; 3]) {
     let mut vectors = Matrix3::<f32>::identity();
     for _ in 0..SWEEPS {
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {
@@ -28,7 +34,7 @@ pub(crate) fn least_eigenvector(mut m: Matrix3<f32>) -> Vector {
             vectors *= rotation;
         }
     }
-    vectors.column(m.diagonal().imin()).normalize()
+    (m.diagonal(), [0, 1, 2].map(|i| vectors.column(i).normalize()))
 }
 
 #[cfg(test)]

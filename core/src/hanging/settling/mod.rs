@@ -12,7 +12,7 @@ use super::pose::HangingPose;
 use super::request::{Distance, Request};
 use super::scene::Scene;
 use crate::best::Best;
-use crate::geometry::Pose;
+use crate::geometry::{Pose, Symmetry};
 use crate::mechanics::{
     Body, Fate, Settings, Settled, Sleep, Support, Unseen, carrying_contacts, comes_free, is_off_surface,
     kind_of, margin, release_pose, settle, unseen,
@@ -61,6 +61,8 @@ pub struct SettlingCounts {
 pub(super) struct Settling<'a> {
     pub(super) body: &'a Body<'a>,
     pub(super) support: &'a Support<'a>,
+    /// Turns of the object that make no other pose.
+    pub(super) symmetries: &'a [Symmetry],
     pub(super) request: &'a Request<'a>,
     pub(super) params: &'a Params,
     /// Working memory, of [`Support::sleepers`].
@@ -110,10 +112,10 @@ struct Release {
 impl<'a> Settling<'a> {
     /// Takes working memory, of [`bytes`](Self::bytes), from `arena`.
     pub(super) fn new(scene: &Scene<'a>, arena: &mut Arena<'a>) -> Result<Self, PredictError> {
-        let Scene { support, request, params, .. } = *scene;
+        let Scene { support, symmetries, request, params, .. } = *scene;
         let body = scene.body.ok_or(PredictError::NoDistanceField)?;
         let sleeps = arena.slice::<Sleep>(Support::sleepers(support.patches.len()))?;
-        Ok(Self { body, support, request, params, sleeps, counts: SettlingCounts::default() })
+        Ok(Self { body, support, symmetries, request, params, sleeps, counts: SettlingCounts::default() })
     }
 
     /// Bytes of working memory, for a supporter of `points`, whose far side has patches as well.
@@ -222,8 +224,7 @@ impl<'a> Settling<'a> {
     fn offer(&self, pose: HangingPose, poses: &mut Best<HangingPose>) {
         let is_alike = |other: &HangingPose| match (&pose.rest, &other.rest) {
             (Some(rest), Some(other)) => {
-                rest.kind == other.kind
-                    && rest.is_like(&other.pose, &self.body.centre, &self.request.distinct)
+                rest.kind == other.kind && self.is_like(rest, &other.pose, &self.request.distinct)
             }
             _ => false,
         };
@@ -254,7 +255,12 @@ impl<'a> Settling<'a> {
 
     /// The rest pose among `poses` that equals `pose` to within a robot's accuracy.
     fn known(&self, pose: &Pose, poses: &Best<HangingPose>) -> Option<Rest> {
-        poses.iter().filter_map(|other| other.rest).find(|rest| rest.is_like(pose, &self.body.centre, &SAME))
+        poses.iter().filter_map(|other| other.rest).find(|rest| self.is_like(rest, pose, &SAME))
+    }
+
+    /// Whether a pose is closer to a rest pose than a distance, whichever way the object is turned by its symmetries.
+    fn is_like(&self, rest: &Rest, pose: &Pose, distance: &Distance) -> bool {
+        rest.is_like(pose, &self.body.centre, self.symmetries, distance)
     }
 
     fn settle(&mut self, start: &Pose, meter: &mut Meter) -> Result<Settled, Stop> {

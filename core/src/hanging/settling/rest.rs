@@ -1,7 +1,7 @@
 //! Where a released object comes to rest, and how firmly.
 
 use super::probability;
-use crate::geometry::{Point, Pose, Vector};
+use crate::geometry::{Point, Pose, Symmetry, Vector, least_angle};
 use crate::hanging::request::Distance;
 use crate::mechanics::{Contact, Kind, MAX_CONTACTS, Margin, Unseen};
 
@@ -93,9 +93,17 @@ impl Rest {
         if weight > 0.0 { (self.pose * centre - moment / weight).coords.norm() } else { 0.0 }
     }
 
-    /// Whether another pose is closer to this rest pose than a distance; `centre` is the object's centre of mass.
-    pub(super) fn is_like(&self, other: &Pose, centre: &Point, distance: &Distance) -> bool {
+    /// Whether another pose is closer to this rest pose than a distance, after turns of the object that its symmetries allow;
+    /// `centre` is the object's centre of mass, which these turns leave in place.
+    pub(super) fn is_like(
+        &self,
+        other: &Pose,
+        centre: &Point,
+        symmetries: &[Symmetry],
+        distance: &Distance,
+    ) -> bool {
         let apart = self.pose * centre - other * centre;
-        apart.norm() < distance.position && self.pose.rotation.angle_to(&other.rotation) < distance.rotation
+        let rotation = self.pose.rotation.inverse() * other.rotation;
+        apart.norm() < distance.position && least_angle(symmetries, &rotation) < distance.rotation
     }
 }
