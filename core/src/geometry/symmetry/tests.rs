@@ -89,6 +89,18 @@ fn solids_of_revolution() {
 }
 
 #[test]
+fn a_rough_mesh() {
+    // Each vertex of a ring of 7 cm is up to 0.3 mm off along each axis, as in a good scan.
+    let mut random = crate::random::Random::new(7);
+    let mut rough = crate::test_shapes::torus(0.03, 0.005, 64, 24);
+    for vertex in &mut rough.vertices {
+        *vertex = vertex.map(|x| x + 0.0006 * (random.next_f32() - 0.5));
+    }
+    let folds: Vec<_> = symmetries(&rough, None).iter().map(|symmetry| symmetry.fold).collect();
+    assert_eq!(folds, [0, 2]);
+}
+
+#[test]
 fn a_ball_has_all_axes() {
     let found = symmetries(&ball(0.03, 48, 64), None);
     assert_eq!(found.iter().map(|s| s.fold).collect::<Vec<_>>(), [0; 3]);
