@@ -87,7 +87,7 @@ static void set_up(void) {
                              &detail) == HANGPOSE_OK);
   params.samples = SAMPLES;
   params.voxels = VOXELS;
-  params.settle_attempts = 2;
+  params.settle_attempts = 8;
   make_ring(0.03f, vertices, triangles);
   make_peg(0.004f, points, normals);
   mesh = (hangpose_mesh){.struct_size = sizeof mesh,

@@ -361,7 +361,8 @@ static void many_at_once(void) {
   }
   REFUSED(ask_many(two, 2, (void *)work, &many));
   REFUSED(ask_many(two, 2, (void *)&many, &many));
-  REFUSED(ask_many((void *)poses, 1, poses, &many));
+  memcpy(poses, two, sizeof two);
+  CHECK(ask_many((void *)poses, 2, poses, &many) == HANGPOSE_ERROR_OVERLAP);
   CHECK(ask_many(two, 2, (void *)object, &many) == HANGPOSE_ERROR_OVERLAP);
   CHECK(strcmp(detail.field, "poses") == 0);
   many.struct_size = 1;
