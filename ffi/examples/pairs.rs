@@ -92,7 +92,7 @@ fn words(thing: &Thing, support: &Support, profile: u32) -> Result<Vec<u32>, Box
         words.extend([work as u32, (work >> 32) as u32]);
     }
     for pose in found.poses {
-        let after_size = offset_of!(hangpose_pose, position);
+        let after_size = offset_of!(hangpose_pose, has_pose);
         words.extend(words_between(&hangpose_pose::from(pose), after_size, size_of::<hangpose_pose>()));
     }
     Ok(words)
