@@ -1247,7 +1247,7 @@ hangpose_status hangpose_predict(const struct hangpose_object *object,
 // Finds poses in which all of `objects` hang on `supporter` at once, each as `request` asks and clear of the others.
 //
 // `objects` is an array of `object_count` objects, 1 to HANGPOSE_MAX_HUNG; copies are the same pointer several times.
-// `poses` is an array of as many structs: poses[i] is for objects[i], and poses[i].has_pose is 0 if there is no room
+// `poses` is an array of as many structs in the order of the objects: `has_pose` of one is 0 if there is no room
 // for it. The first objects choose first. At most HANGPOSE_MAX_HUNG hang in the end, with those that hang already; the
 // objects beyond have no pose. The models must have been analysed with these `params`, of which `settle` must be 1.
 //

@@ -426,8 +426,8 @@ fn pictures(cases: &[Case], folder: &Path) -> Result<()> {
             let cloud = case.supporter_cloud();
             let cloud = cloud.cloud().expect("samples are valid");
             let poses = predicted(&case.object.mesh(), &cloud, &request, &params(case), ALL_POSES);
-            let rests = poses.iter().filter_map(|pose| Some((case, pose.pose, pose.rest?.pose)));
-            rests.filter(|(case, _, rest)| case.hangs(rest) == kind).next()
+            let mut rests = poses.iter().filter_map(|pose| Some((case, pose.pose, pose.rest?.pose)));
+            rests.find(|(case, _, rest)| case.hangs(rest) == kind)
         });
         let (case, release, rest) =
             found.with_context(|| format!("no {object} is {kind} on a {supporter}"))?;
