@@ -7,7 +7,7 @@ help:
 	@echo "make bench    measure time and memory"
 	@echo "make peer     compare time and poses with another implementation: PEER=peer.py [MESHES=folder]"
 	@echo "make tables   simulate 600 pairs in two engines and write docs/RESULTS.md [MESHES=folder adds real meshes]"
-	@echo "make meant    measure poses in turned frames, tolerances and probabilities [MESHES=folder adds real meshes]"
+	@echo "make meant    measure kinds, turned frames, mug trees, tolerances and probabilities [MESHES=folder adds real meshes]"
 	@echo "make calibrate  refit the constants of docs/PROBABILITY.md"
 	@echo "make lib      build libhangpose.a and libhangpose.so for C and C++ in build/link"
 	@echo "make install  install the libraries and headers: [PREFIX=/usr/local] [DESTDIR=...]"
@@ -58,10 +58,11 @@ tables: setup
 	@printf '```\n' >> docs/RESULTS.md
 
 meant: setup
-	cargo run --release -p host-tests --bin meant -- turned --pairs 90 --seed 31
-	cargo run --release -p host-tests --bin meant -- tolerance --pairs 90 --seed 31
-	cargo run --release -p host-tests --bin meant -- many --pairs 30 --seed 31
-	cargo run --release -p host-tests --bin meant -- probability --pairs 90 --seed 31 $(if $(MESHES),--meshes $(MESHES))
+	cargo run --release -p host-tests --bin tables -- --summary --engine bullet --profile default --pairs 100 --seed 41 --json build/meant.jsonl
+	cargo run --release -p host-tests --bin meant -- turned --pairs 60 --seed 41
+	cargo run --release -p host-tests --bin meant -- many --pairs 15 --seed 41
+	cargo run --release -p host-tests --bin meant -- tolerance --pairs 60 --seed 41
+	cargo run --release -p host-tests --bin meant -- probability --pairs 90 --seed 41 $(if $(MESHES),--meshes $(MESHES))
 
 peer_python = build/peer/bin/python
 
