@@ -233,11 +233,14 @@ impl<'a> Surroundings<'a> {
         let [near, far] = travels.map(|travel| f32::from(travel) * TENTHS);
         let [from, to] = [(a, near), (b, far)].map(|(cell, travel)| self.probe.at + self.way(cell) * travel);
         let radius = self.probe.radius.max(GROWTH * near.max(far));
-        let steps = libm::ceilf((to - from).norm() / radius) as usize;
+        let length = (to - from).norm();
+        let steps = libm::ceilf(length / radius) as usize;
+        // A straight wire between the two may be half a direction off the straight line.
+        let widest = MAX_GAP * radius + GROWTH * length;
         meter.distance_queries(steps)?;
         let is_filled = |step: usize| {
             let point = from + (to - from) * (step as f32 / steps as f32);
-            self.probe.body.field.distance(&point) < MAX_GAP * radius
+            self.probe.body.field.distance(&point) < widest
         };
         Ok((1..steps).all(is_filled))
     }
