@@ -48,6 +48,21 @@ impl Solid {
         Mesh::new(&self.vertices, &self.triangles).expect("every vertex is finite and every index in range")
     }
 
+    /// The same shape in another size.
+    pub fn scaled(&self, factor: f32) -> Self {
+        let scale = |point: &[f32; 3]| point.map(|x| x * factor);
+        let parts = self.parts.iter().map(|part| match part {
+            Part::Hull(points) => Part::Hull(points.iter().map(scale).collect()),
+            Part::Capsule { from, to, radius } => {
+                Part::Capsule { from: scale(from), to: scale(to), radius: radius * factor }
+            }
+            Part::Cuboid { centre, axes, half_extents } => {
+                Part::Cuboid { centre: scale(centre), axes: *axes, half_extents: scale(half_extents) }
+            }
+        });
+        Self { vertices: self.vertices.iter().map(scale).collect(), parts: parts.collect(), ..self.clone() }
+    }
+
     /// This shape with others at their poses, as one rigid shape.
     pub fn with<'a>(&self, others: impl IntoIterator<Item = (&'a Solid, Isometry3<f32>)>) -> Self {
         let mut all = self.clone();

@@ -441,6 +441,10 @@ fn pictures(cases: &[Case], folder: &Path) -> Result<()> {
 /// Number of points that a tree is sampled to.
 const TREE_POINTS: usize = 10_000;
 
+/// Largest extent of a mug with its handle, in distances between the tips of neighbouring pegs; larger mugs are made smaller. It
+/// hangs half as far to either side of its peg, so that neighbours have room.
+const ROOM: f32 = 0.8;
+
 /// What became of the mugs of one tree.
 struct Filled {
     pegs: usize,
@@ -451,8 +455,8 @@ struct Filled {
     seconds: f64,
 }
 
-/// Prints the share of the pegs of mug trees that are filled: the mugs are of different shapes, and each hangs by its handle
-/// alone.
+/// Prints the share of the pegs of mug trees that are filled: the mugs are of different shapes, each hangs by its handle
+/// alone, and none is larger than the distance between neighbouring pegs.
 fn many(trees: usize, seed: u64, threads: usize) {
     let seeds: Vec<u64> = (0..trees as u64).map(|k| seed.wrapping_mul(10_007).wrapping_add(k)).collect();
     let filled = each(&seeds, threads, |seed| fill(*seed));
@@ -469,8 +473,18 @@ fn fill(seed: u64) -> Filled {
     let named = |name: &str| OBJECTS.iter().find(|kind| kind.name == name).expect("there are mugs");
     let tree = SUPPORTERS.iter().find(|kind| kind.name == "mug tree").expect("there are trees").make(seed);
     let pegs = tree.bars.len();
+    let tip = |bar: &Bar| Point::from(bar.position) + Vector::from(bar.direction) * bar.length;
+    let apart = |a: &Bar| {
+        let others = tree.bars.iter().map(|b| (tip(a) - tip(b)).norm()).filter(|distance| *distance > 0.0);
+        others.fold(f32::INFINITY, f32::min)
+    };
+    let nearest = tree.bars.iter().map(apart).fold(f32::INFINITY, f32::min);
     let mugs: Vec<_> = (0..)
-        .map(|k| named("mug").make(seed.wrapping_mul(1009).wrapping_add(k)))
+        .map(|k| {
+            let mug = named("mug").make(seed.wrapping_mul(1009).wrapping_add(k));
+            let size = mug.solid.mesh().aabb().extents().max();
+            mug.scaled((ROOM * nearest / size).min(1.0))
+        })
         .filter(|mug| meant(mug, &tree) == Some(Kind::Threaded))
         .take(pegs)
         .collect();

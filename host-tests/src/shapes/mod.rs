@@ -63,6 +63,23 @@ pub struct HangObject {
     pub openings: Vec<Opening>,
 }
 
+impl HangObject {
+    /// The same object in another size.
+    pub fn scaled(&self, factor: f32) -> Self {
+        let scale = |point: [f32; 3]| point.map(|x| x * factor);
+        let openings = self.openings.iter().map(|opening| Opening {
+            kind: match opening.kind {
+                OpeningKind::Neck { head_radius } => OpeningKind::Neck { head_radius: head_radius * factor },
+                other => other,
+            },
+            centre: scale(opening.centre),
+            clear_radius: opening.clear_radius * factor,
+            ..*opening
+        });
+        Self { solid: self.solid.scaled(factor), openings: openings.collect() }
+    }
+}
+
 /// How an opening holds the object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OpeningKind {
