@@ -32,8 +32,11 @@ const COLUMNS: usize = 2 * ROWS;
 const END_ROWS: usize = 7;
 /// Growth of the ball with its distance, no unit: half of a row, so that no material passes between two directions.
 const GROWTH: f32 = 0.044;
-/// Free ways that lead to an end at least, of [`END_ROWS`] times [`COLUMNS`]. Fewer are a hole through which no bar passes.
-const MIN_WAYS: usize = 8;
+/// Least share of the ways around an end of the bar that lead out, if a bar goes on there. It need not be all: the direction of the
+/// bar is not exact, and the rest of the object may be beside it.
+const MIN_OPEN: f32 = 0.4;
+/// Stride through the columns for that, which need no more.
+const END_STRIDE: usize = 6;
 /// Largest distance between the material of two neighbouring directions, in radii of the ball there: twice as wide is a gap
 /// through which it passes.
 const MAX_GAP: f32 = 1.5;
@@ -174,17 +177,20 @@ impl<'a> Surroundings<'a> {
         Ok(self.travels[cell])
     }
 
-    /// Whether ways lead out towards both ends of the bar.
+    /// Whether most ways around both ends of the bar lead out. Material around an axis that pierces it is no loop.
     fn has_open_ends(&mut self, meter: &mut Meter) -> Result<bool, Stop> {
-        for first in [0, ROWS - END_ROWS] {
-            let mut free = 0;
-            for cell in first * COLUMNS..(first + END_ROWS) * COLUMNS {
-                free += usize::from(self.travel(cell, meter)? == FREE);
-                if free == MIN_WAYS {
-                    break;
+        for is_second in [false, true] {
+            let (mut free, mut all) = (0.0, 0.0);
+            for ring in 0..END_ROWS {
+                let row = if is_second { ROWS - 1 - ring } else { ring };
+                // Rows far from the end cover more of the sphere.
+                let weight = ring as f32 + 0.5;
+                for column in (0..COLUMNS).step_by(END_STRIDE) {
+                    all += weight;
+                    free += if self.travel(row * COLUMNS + column, meter)? == FREE { weight } else { 0.0 };
                 }
             }
-            if free < MIN_WAYS {
+            if free < MIN_OPEN * all {
                 return Ok(false);
             }
         }
