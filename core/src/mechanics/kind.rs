@@ -83,6 +83,15 @@ const BAR_DEPTHS: [f32; 4] = [0.004, 0.0025, 0.0015, 0.001];
 const MIN_ROOM: f32 = 0.6;
 /// Thickness of the probe, as a share of that depth: a gap through which it does not pass is closed.
 const PROBE_RADIUS: f32 = 0.4;
+/// Lengths over which the object is moved sideways to see whether the supporter stops it, metres: as far as a hook is wide.
+const SIDEWAYS: [f32; 8] = [0.004, 0.008, 0.012, 0.016, 0.02, 0.026, 0.032, 0.04];
+/// Depth of an overlap that stops the object, metres: more than the errors of the cloud.
+const STOPPING_DEPTH: f32 = 0.0015;
+/// Sine of the angle to up below which a bar has no level direction.
+const STEEP: f32 = 0.3;
+/// Directions in which a steep bar is caught.
+const STEEP_SIDES: usize = 4;
+
 /// How the object hangs at `rest`, carried by `contacts`.
 pub(crate) fn kind_of(
     scene: (&Body, &Support),
@@ -132,15 +141,6 @@ fn probe_below<'a>(body: &'a Body<'a>, to_object: &Pose, contact: &Contact) -> O
         has_room.then_some(Probe { body, at, radius: PROBE_RADIUS * depth })
     })
 }
-
-/// Lengths over which the object is moved sideways to see whether the supporter stops it, metres: as far as a hook is wide.
-const SIDEWAYS: [f32; 8] = [0.004, 0.008, 0.012, 0.016, 0.02, 0.026, 0.032, 0.04];
-/// Depth of an overlap that stops the object, metres: more than the errors of the cloud.
-const STOPPING_DEPTH: f32 = 0.0015;
-/// Sine of the angle to up below which a bar has no level direction.
-const STEEP: f32 = 0.3;
-/// Directions in which a steep bar is caught.
-const STEEP_SIDES: usize = 4;
 
 /// Whether the object is caught on both sides of the bar: it cannot move sideways without rising.
 fn is_caught(
