@@ -748,7 +748,7 @@ typedef struct hangpose_prediction {
   // Number of releases that came to rest in a pose that would be probable enough if what no camera has seen were known to be
   // as it is guessed.
   uint32_t settling_unseen;
-  // Number of different rest poses with at least hangpose_params.min_probability.
+  // Number of different rest poses with at least hangpose_params.min_probability, with those that gave way to a better one.
   uint32_t settling_probable;
   // Number of firm releases, see hangpose_params.firm_enough.
   uint32_t settling_firm;

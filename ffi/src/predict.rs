@@ -58,7 +58,7 @@ pub struct hangpose_prediction {
     /// Number of releases that came to rest in a pose that would be probable enough if what no camera has seen were known to be
     /// as it is guessed.
     pub settling_unseen: u32,
-    /// Number of different rest poses with at least hangpose_params.min_probability.
+    /// Number of different rest poses with at least hangpose_params.min_probability, with those that gave way to a better one.
     pub settling_probable: u32,
     /// Number of firm releases, see hangpose_params.firm_enough.
     pub settling_firm: u32,

@@ -41,7 +41,8 @@ pub struct SettlingCounts {
     /// Releases that came to rest in a pose that would be probable enough if what no camera has seen were known to be as it is
     /// guessed.
     pub unseen: usize,
-    /// Distinct rest poses with a probability of at least [`Params::min_probability`].
+    /// Distinct rest poses with a probability of at least [`Params::min_probability`], with those that gave way to a better one that
+    /// hardly differs.
     pub probable: usize,
     /// Releases that came to rest in a pose with a probability of 97.5 % or more.
     pub firm: usize,
