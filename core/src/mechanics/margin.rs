@@ -96,6 +96,16 @@ pub(crate) fn carrying_contacts(
     Ok(carrying.map(|(position, normal, force)| Contact { position, normal, force }).collect())
 }
 
+/// Distance from the contacts, weighted with their forces, to the centre of mass `centre` in supporter coordinates, metres.
+pub(crate) fn lever(centre: &Point, contacts: &[Contact]) -> f32 {
+    let (mut weight, mut moment) = (0.0, Vector::zeros());
+    for contact in contacts {
+        weight += contact.force;
+        moment += contact.position.coords * contact.force;
+    }
+    if weight > 0.0 { (centre.coords - moment / weight).norm() } else { 0.0 }
+}
+
 /// Tests the stability of the rest pose `rest`, carried by `contacts`: gravity tilts in every direction, and then it jolts. A
 /// tilt below `least`, radians, ends the test: the tilts of the remaining directions and the jolt time are zero.
 pub(crate) fn margin(
@@ -110,12 +120,7 @@ pub(crate) fn margin(
     let body = scene.0;
     let settings = Settings::damped(params);
     let start = body.at(rest);
-    let (mut weight, mut moment) = (0.0, Vector::zeros());
-    for contact in contacts {
-        weight += contact.force;
-        moment += contact.position.coords * contact.force;
-    }
-    let lever = if weight > 0.0 { (start.centre.coords - moment / weight).norm() } else { 0.0 };
+    let lever = lever(&start.centre, contacts);
 
     let tilting = Settings { friction: TILT_FRICTION_FACTOR * params.friction, ..settings };
     let mut margin = Margin::default();

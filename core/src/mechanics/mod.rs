@@ -32,7 +32,7 @@ pub use constants::GRAVITY;
 pub(crate) use kind::kind_of;
 pub use kind::{Kind, Kinds};
 pub use margin::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
-pub(crate) use margin::{carrying_contacts, margin};
+pub(crate) use margin::{carrying_contacts, lever, margin};
 pub(crate) use motion::Settings;
 pub(crate) use neighbourhood::Sleep;
 pub(crate) use obstacles::{is_clear_of_points, is_clear_of_surface};

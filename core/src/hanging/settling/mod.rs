@@ -15,7 +15,7 @@ use crate::best::Best;
 use crate::geometry::{Pose, Symmetry};
 use crate::mechanics::{
     Body, Fate, Settings, Settled, Sleep, Support, Unseen, carrying_contacts, comes_free, is_off_surface,
-    kind_of, margin, release_pose, settle, unseen,
+    kind_of, lever, margin, release_pose, settle, unseen,
 };
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop};
@@ -135,16 +135,24 @@ impl<'a> Settling<'a> {
             meter.progress(index as f32 / poses.len() as f32);
             let pose = poses[index];
             let mut firm = Best::filled(&mut poses[..=index], left);
-            if let Err(stop) = self.release(&pose, &mut firm, meter) {
+            let released = match is_clear_of_scene(self.body, self.request, &pose.pose, CLEARANCE, meter) {
+                Ok(true) => self.release(&pose, &mut firm, meter).map(|_| ()),
+                Ok(false) => {
+                    self.counts.in_scene += 1;
+                    Ok(())
+                }
+                Err(stop) => Err(stop),
+            };
+            left = firm.len();
+            if let Err(stop) = released {
                 return (left, Err(stop));
             }
-            left = firm.len();
         }
         (left, Ok(()))
     }
 
-    /// Releases the object, offers its rest pose to `poses` if it is probable enough, and returns whether it came to
-    /// rest.
+    /// Releases the object at a pose that is clear of the scene, offers its rest pose to `poses` if it is as asked and probable
+    /// enough, and returns whether it came to rest.
     pub(super) fn release(
         &mut self,
         start: &HangingPose,
@@ -154,10 +162,6 @@ impl<'a> Settling<'a> {
         let scene = (self.body, self.support);
         // Details finer than the distance field's voxels show only in this exact test.
         if !is_off_surface(scene, &start.pose, CLEARANCE, meter)? {
-            return Ok(false);
-        }
-        if !is_clear_of_scene(self.body, self.request, &start.pose, CLEARANCE, meter)? {
-            self.counts.in_scene += 1;
             return Ok(false);
         }
         self.counts.released += 1;
@@ -241,7 +245,7 @@ impl<'a> Settling<'a> {
     /// and how robust it is.
     fn merit(&self, pose: &HangingPose) -> f32 {
         let Some(rest) = &pose.rest else { return 0.0 };
-        let lever = rest.lever(&self.body.centre) / self.body.reach;
+        let lever = lever(&(rest.pose * self.body.centre), rest.contacts()) / self.body.reach;
         rest.probability
             * self.request.weight(rest.kind)
             * (1.0 - LEVER_SHARE * (1.0 - lever))

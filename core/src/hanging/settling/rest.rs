@@ -1,7 +1,7 @@
 //! Where a released object comes to rest, and how firmly.
 
 use super::probability;
-use crate::geometry::{Point, Pose, Symmetry, Vector, least_angle};
+use crate::geometry::{Point, Pose, Symmetry, least_angle};
 use crate::hanging::request::Distance;
 use crate::mechanics::{Contact, Kind, MAX_CONTACTS, Margin, Unseen};
 
@@ -81,16 +81,6 @@ impl Rest {
     /// The contacts that carry the object at rest.
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts[..self.contact_count as usize]
-    }
-
-    /// Distance from the contacts, weighted with their forces, to the centre of mass `centre` of the object, metres.
-    pub(super) fn lever(&self, centre: &Point) -> f32 {
-        let (mut weight, mut moment) = (0.0, Vector::zeros());
-        for contact in self.contacts() {
-            weight += contact.force;
-            moment += contact.position.coords * contact.force;
-        }
-        if weight > 0.0 { (self.pose * centre - moment / weight).coords.norm() } else { 0.0 }
     }
 
     /// Whether another pose is closer to this rest pose than a distance, after turns of the object that its symmetries allow;
