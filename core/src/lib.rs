@@ -79,6 +79,7 @@ mod heap;
 pub mod mechanics;
 pub mod memory;
 mod monitor;
+pub mod motion;
 mod params;
 pub mod perception;
 mod random;
