@@ -85,7 +85,7 @@ pub(super) fn outline(
         Err(End::Failure(failure)) => Err(failure),
         Err(End::Error(error)) => return Err(error),
     };
-    let counts = PlanCounts { asked: permit.asked, ..planner.counts };
+    let counts = PlanCounts { asked: permit.asked, poses: planner.meter.poses, ..planner.counts };
     meter.progress(1.0);
     Ok(Outline { path, counts, work: meter.work })
 }
@@ -251,6 +251,7 @@ impl<'a> Planner<'_, 'a, '_> {
         loop {
             let outcome = search.run(motion.samples, found, permit, self.meter);
             self.counts = search.counts;
+            self.counts.nodes += search.trees.iter().map(|tree| tree.nodes().len()).sum::<usize>();
             match outcome? {
                 Outcome::Found => {}
                 Outcome::UsedUp => {

@@ -63,8 +63,11 @@ pub(super) struct Space<'a> {
 
 /// Distance from a patch of the supporter, metres, up to which its nearest point is looked for; beyond it a bound will do.
 const PATCH_RANGE: f32 = 0.003;
-/// Least step between two tests whether the object is inside the workspace, metres: it may leave it by as much in between.
-const LEAST_STEP_INSIDE: f32 = 0.001;
+/// Distance beyond which a lower bound is as good as the distance, metres: a step of this length is long.
+const EXACT_UP_TO: f32 = 0.008;
+/// Travel between two poses that are tested at least, metres: less than what a bar is thick. What this misses, the certificate
+/// of the whole route finds.
+const LEAST_STEP: f32 = 0.001;
 /// Points of a scene at which its spacing is measured.
 const SPACING_PROBES: usize = 64;
 /// Radius of the points of a scene, in multiples of the median distance between neighbours: balls of this radius around the points
@@ -211,6 +214,7 @@ impl Space<'_> {
         meter: &mut Meter,
     ) -> Result<(), Stop> {
         let Self { moving, obstacles, .. } = self;
+        meter.poses += 1;
         let pose = &at.pose(&moving.centre);
         if let Some(body) = &moving.body {
             let mut query = ObjectQuery::new(body, pose, found);
@@ -251,6 +255,7 @@ impl Space<'_> {
         required: f32,
         meter: &mut Meter,
     ) -> Result<Way, Stop> {
+
         let travel = leg.travel(self.moving.reach).max(1e-9);
         let mut way = Way { share: 0.0, clearance: MAX_CLEARANCE };
         let mut share = 0.0;
@@ -268,7 +273,7 @@ impl Space<'_> {
             if share >= 1.0 {
                 return Ok(way);
             }
-            let step = (distance - 0.5 * required).min(room.max(LEAST_STEP_INSIDE));
+            let step = (distance - 0.5 * required).min(room).max(LEAST_STEP);
             share = (share + step / travel).min(1.0);
         }
     }
