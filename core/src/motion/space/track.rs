@@ -1,8 +1,8 @@
 //! What has been learnt from the poses before: how near each part of the supporter may be by now.
 
-use crate::motion::placement::Placement;
 use crate::mechanics::Support;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::motion::placement::Placement;
 use crate::perception::far_side;
 
 /// Lower bounds of the distances of the supporter's patches and groups of patches from the object.
