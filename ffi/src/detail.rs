@@ -88,11 +88,13 @@ mod tests {
     use hangpose_core::ParamsError;
     use hangpose_core::geometry::{CloudError, MeshError};
     use hangpose_core::hanging::{RegionError, RequestError};
+    use hangpose_core::motion::MotionError;
     use std::string::ToString;
 
     #[test]
     fn the_longest_messages_fit() {
         let request = |error| Failure::Request { error, spot: Place::default().into() };
+        let motion = |error| Failure::Motion { error, spot: Place::default().into() };
         let (most, worst) = (usize::MAX, [-1.175_494_4e-38_f32; 3]);
         for failure in [
             Failure::StructSize { argument: "supporter memory", given: most, expected: most },
@@ -129,6 +131,16 @@ mod tests {
             request(RequestError::Scene { point: most, position: worst }),
             request(RequestError::Distinct),
             request(RequestError::Symmetry { index: most }),
+            motion(MotionError::Start),
+            motion(MotionError::Part { part: most }),
+            motion(MotionError::Retreat),
+            motion(MotionError::Workspace),
+            motion(MotionError::Value { name: "speed.angular_acceleration", value: worst[0], max: worst[0] }),
+            motion(MotionError::Count { name: "samples", value: most, min: most, max: most }),
+            Failure::Goal { spot: Place::of("goal.rest_quaternion").into() },
+            Failure::NoGoal { value: u32::MAX },
+            Failure::HungWithoutField { index: most },
+            Failure::Waypoints { needed: most, given: most },
         ] {
             let text = failure.to_string();
             assert!(text.len() < HANGPOSE_MESSAGE_CHARS, "{} bytes: {text}", text.len());

@@ -75,6 +75,9 @@ const NO_LIMITS: hangpose_limits = hangpose_limits {
     voxels: 0,
     points: 0,
     poses: 0,
+    scene_points: 0,
+    nodes: 0,
+    waypoints: 0,
 };
 
 fn turn(step: u32, steps: u32) -> f32 {

@@ -73,6 +73,27 @@ impl Rest {
         }
     }
 
+    /// A rest pose of which nothing but the contacts is known, as another program gives it, for a path to it. All numbers are
+    /// zero, and the kind is [`Kind::Balanced`], which says least. Of `contacts`, [`MAX_CONTACTS`] count.
+    pub fn at(pose: Pose, contacts: &[Contact]) -> Self {
+        let mut known = [Contact::default(); MAX_CONTACTS];
+        let count = contacts.len().min(MAX_CONTACTS);
+        known[..count].copy_from_slice(&contacts[..count]);
+        Self {
+            pose,
+            kind: Kind::Balanced,
+            sinking: 0.0,
+            clearance: 0.0,
+            tolerance: Tolerance::default(),
+            probability: 0.0,
+            robustness: 0.0,
+            unseen: Unseen::default(),
+            margin: Margin::default(),
+            contacts: known,
+            contact_count: count as u32,
+        }
+    }
+
     /// Whether nothing but what nobody saw keeps the pose from being certain.
     pub(super) fn is_firm(&self) -> bool {
         probability::is_firm(self.probability, &self.unseen)
