@@ -88,15 +88,15 @@
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 14
 #define HANGPOSE_PREDICT_BYTES_EACH_POSE 432
 #define HANGPOSE_PLAN_BYTES_AT_LEAST 2048
-#define HANGPOSE_PLAN_BYTES_EACH_POINT 64
-#define HANGPOSE_PLAN_BYTES_EACH_SCENE_POINT 64
-#define HANGPOSE_PLAN_BYTES_EACH_NODE 64
+#define HANGPOSE_PLAN_BYTES_EACH_POINT 9
+#define HANGPOSE_PLAN_BYTES_EACH_SCENE_POINT 76
+#define HANGPOSE_PLAN_BYTES_EACH_NODE 218
 #define HANGPOSE_PLAN_BYTES_EACH_WAYPOINT 32
 #define HANGPOSE_REACHABLE_BYTES_AT_LEAST 46080
-#define HANGPOSE_REACHABLE_BYTES_EACH_POINT 64
+#define HANGPOSE_REACHABLE_BYTES_EACH_POINT 14
 #define HANGPOSE_REACHABLE_BYTES_EACH_POSE 488
-#define HANGPOSE_REACHABLE_BYTES_EACH_SCENE_POINT 64
-#define HANGPOSE_REACHABLE_BYTES_EACH_NODE 64
+#define HANGPOSE_REACHABLE_BYTES_EACH_SCENE_POINT 76
+#define HANGPOSE_REACHABLE_BYTES_EACH_NODE 218
 #define HANGPOSE_REACHABLE_BYTES_EACH_WAYPOINT 32
 #define HANGPOSE_VOLUME_BYTES_AT_LEAST 2048
 #define HANGPOSE_VOLUME_BYTES_EACH_BLOCK 2072
@@ -1557,7 +1557,7 @@ const char *hangpose_plan_reason_string(hangpose_plan_reason reason);
 // hangpose_params.voxels.
 //
 // `goal` is a pose of hangpose_predict or one of the caller's, of which struct_size, has_pose = 1, position, quaternion and
-// has_rest are read, and with has_rest = 1 rest_position, rest_quaternion and the contacts. Of `request` the scene and the
+// has_rest are read, and with has_rest = 1 rest_position and rest_quaternion. Of `request` the scene and the
 // objects that hang already are obstacles; it may be null. `motion` may be null: from anywhere, without a gripper.
 //
 // `memory` is working memory of at least hangpose_plan_bytes, needed during the call only. `monitor` may be null.

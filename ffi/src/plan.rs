@@ -70,7 +70,7 @@ unsafe impl Public for hangpose_plan {
 /// hangpose_params.voxels.
 ///
 /// `goal` is a pose of hangpose_predict or one of the caller's, of which struct_size, has_pose = 1, position, quaternion and
-/// has_rest are read, and with has_rest = 1 rest_position, rest_quaternion and the contacts. Of `request` the scene and the
+/// has_rest are read, and with has_rest = 1 rest_position and rest_quaternion. Of `request` the scene and the
 /// objects that hang already are obstacles; it may be null. `motion` may be null: from anywhere, without a gripper.
 ///
 /// `memory` is working memory of at least hangpose_plan_bytes, needed during the call only. `monitor` may be null.

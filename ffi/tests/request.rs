@@ -2,6 +2,8 @@
 
 #[path = "request/many.rs"]
 mod many;
+#[path = "request/plan.rs"]
+mod plan;
 
 use hangpose_ffi::*;
 use std::ffi::CStr;

@@ -73,12 +73,9 @@ impl Rest {
         }
     }
 
-    /// A rest pose of which nothing but the contacts is known, as another program gives it, for a path to it. All numbers are
-    /// zero, and the kind is [`Kind::Balanced`], which says least. Of `contacts`, [`MAX_CONTACTS`] count.
-    pub fn at(pose: Pose, contacts: &[Contact]) -> Self {
-        let mut known = [Contact::default(); MAX_CONTACTS];
-        let count = contacts.len().min(MAX_CONTACTS);
-        known[..count].copy_from_slice(&contacts[..count]);
+    /// A rest pose that another program gives, for a path to it: nothing else is known of it. All numbers are zero, and the
+    /// kind is [`Kind::Balanced`], which says least.
+    pub fn at(pose: Pose) -> Self {
         Self {
             pose,
             kind: Kind::Balanced,
@@ -89,8 +86,8 @@ impl Rest {
             robustness: 0.0,
             unseen: Unseen::default(),
             margin: Margin::default(),
-            contacts: known,
-            contact_count: count as u32,
+            contacts: [Contact::default(); MAX_CONTACTS],
+            contact_count: 0,
         }
     }
 
