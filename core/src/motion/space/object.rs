@@ -1,10 +1,12 @@
 //! Distances of the object from what stands still, by its signed distance field.
 
 use super::touch::{Collector, Touch};
-use super::{EXACT_UP_TO, Obstacles, PATCH_RANGE};
+use super::track::Track;
+use super::{EXACT_UP_TO, PATCH_RANGE};
 use crate::geometry::{Aabb, Node, Point, PointTree, Pose, Surface, Vector};
-use crate::mechanics::{Body, Gap, gap_to_patch};
+use crate::mechanics::{Body, Gap, Support, gap_to_patch};
 use crate::motion::failure::{Mover, Obstacle};
+use nalgebra::Rotation3;
 
 /// Most halvings of a triangle until it is as small as distances are told.
 const MAX_HALVINGS: usize = 24;
@@ -55,34 +57,52 @@ impl<'q, 'a, C: Collector> ObjectQuery<'q, 'a, C> {
         }
     }
 
-    pub(super) fn supporter(&mut self, obstacles: &Obstacles) {
-        let (support, to_object) = (obstacles.support, self.to_object);
+    pub(super) fn supporter(&mut self, support: &Support, track: &mut Track) {
         let rotation = self.pose.rotation.to_rotation_matrix();
-        let Some(tree) = obstacles.groups else { return };
-        let bound = |query: &mut Self, node: &Node| {
-            query.bound_of_box(&node.aabb(), &to_object, 0.0, Obstacle::Supporter)
-        };
-        tree.visit_ordered(self, bound, Self::limit, |query, items| {
-            for &group in &obstacles.group_order[items] {
-                let group = &support.groups[group as usize];
-                if query.bound(&(to_object * group.centre), group.radius, Obstacle::Supporter).is_none() {
-                    continue;
-                }
-                for patch in group.patches() {
-                    let at = to_object * support.position(patch);
-                    query.queries += 1;
-                    let margin = query.limit().min(PATCH_RANGE);
-                    match gap_to_patch(query.body, support, patch, (&rotation, &at), margin) {
-                        Gap::Near { distance, at, gradient } => {
-                            query.offer(distance, &at, gradient, Obstacle::Supporter);
-                        }
-                        Gap::Beyond(distance) => {
-                            query.offer(distance, &at, Vector::zeros(), Obstacle::Supporter);
-                        }
-                    }
-                }
+        if let Some(before) = track.patches.get(track.nearest)
+            && before - track.travelled < self.limit()
+        {
+            self.patch(support, &rotation, track.nearest, track);
+        }
+        for (index, group) in support.groups.iter().enumerate() {
+            if track.groups[index] - track.travelled >= self.limit() {
+                continue;
             }
-        });
+            let at = self.to_object * group.centre;
+            self.queries += 1;
+            let bound = self.body.field.distance(&at) - group.radius;
+            if bound >= EXACT_UP_TO {
+                self.offer(bound, &at, Vector::zeros(), Obstacle::Supporter);
+            }
+            track.groups[index] = track.travelled + bound;
+            if bound >= self.limit() {
+                continue;
+            }
+            let mut least = f32::INFINITY;
+            for patch in group.patches() {
+                if track.patches[patch] - track.travelled < self.limit() {
+                    self.patch(support, &rotation, patch, track);
+                }
+                least = least.min(track.patches[patch]);
+            }
+            track.groups[index] = least;
+        }
+    }
+
+    fn patch(&mut self, support: &Support, rotation: &Rotation3<f32>, patch: usize, track: &mut Track) {
+        let at = self.to_object * support.position(patch);
+        self.queries += 1;
+        let before = self.limit();
+        let (distance, at, gradient) =
+            match gap_to_patch(self.body, support, patch, (rotation, &at), before.min(PATCH_RANGE)) {
+                Gap::Near { distance, at, gradient } => (distance, at, gradient),
+                Gap::Beyond(distance) => (distance, at, Vector::zeros()),
+            };
+        track.patches[patch] = track.travelled + distance;
+        self.offer(distance, &at, gradient, Obstacle::Supporter);
+        if distance < before {
+            track.nearest = patch;
+        }
     }
 
     fn limit(&self) -> f32 {
