@@ -46,7 +46,7 @@ const CLOSE_ROTATION: f32 = 0.8;
 
 /// A search for a way between a goal and one of several starts.
 pub(super) struct Search<'q, 'a, 's> {
-    pub(super) space: &'q Space<'a>,
+    pub(super) space: &'q mut Space<'a>,
     /// Distance that is kept from everything, metres.
     pub(super) required: f32,
     /// From the goal and from the starts.
