@@ -312,7 +312,13 @@ impl<'a> Planner<'_, 'a, '_> {
         let anywhere = &mut |_: &Pose| true;
         self.add_starts(&mut space, &everything, &at, room)?;
         room.trees[0].add(at, None, MAX_CLEARANCE);
-        match self.search(&mut space, required, (&region, &at), room, &mut Permit::new(anywhere, moving.centre)) {
+        match self.search(
+            &mut space,
+            required,
+            (&region, &at),
+            room,
+            &mut Permit::new(anywhere, moving.centre),
+        ) {
             Err(End::Failure(PlanFailure::BudgetUsedUp { .. } | PlanFailure::TreesFull { .. })) => {
                 Err(PlanFailure::GripperCannotLeave.into())
             }

@@ -203,8 +203,9 @@ impl<'m> Bvh<'m> {
                 if let Some(items) = node.items() {
                     visit(state, items);
                 } else {
-                    let [left, right] =
-                        node.children().map(|child| Some((child, bound(state, &self.nodes[child as usize])?)));
+                    let [left, right] = node
+                        .children()
+                        .map(|child| Some((child, bound(state, &self.nodes[child as usize])?)));
                     next = match (left, right) {
                         (Some(left), Some(right)) => {
                             let (near, far) = if right.1 < left.1 { (right, left) } else { (left, right) };

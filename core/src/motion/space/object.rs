@@ -128,8 +128,7 @@ impl<'q, 'a, C: Collector> ObjectQuery<'q, 'a, C> {
     /// Another object, by its surface and its pose.
     pub(super) fn surface(&mut self, surface: &Surface, pose: &Pose, obstacle: Obstacle) {
         let between = self.to_object * pose;
-        let bound =
-            |query: &mut Self, node: &Node| query.bound_of_box(&node.aabb(), &between, 0.0, obstacle);
+        let bound = |query: &mut Self, node: &Node| query.bound_of_box(&node.aabb(), &between, 0.0, obstacle);
         surface.bvh().visit_ordered(self, bound, Self::limit, |query, items| {
             for triangle in &surface.triangles()[items] {
                 query.triangle(triangle.map(|corner| between * corner), obstacle);
