@@ -94,7 +94,6 @@ mod tests {
     #[test]
     fn the_longest_messages_fit() {
         let request = |error| Failure::Request { error, spot: Place::default().into() };
-        let motion = |error| Failure::Motion { error, spot: Place::default().into() };
         let (most, worst) = (usize::MAX, [-1.175_494_4e-38_f32; 3]);
         for failure in [
             Failure::StructSize { argument: "supporter memory", given: most, expected: most },
@@ -131,13 +130,17 @@ mod tests {
             request(RequestError::Scene { point: most, position: worst }),
             request(RequestError::Distinct),
             request(RequestError::Symmetry { index: most }),
-            motion(MotionError::Start),
-            motion(MotionError::Part { part: most }),
-            motion(MotionError::Retreat),
-            motion(MotionError::Workspace),
-            motion(MotionError::Value { name: "speed.angular_acceleration", value: worst[0], max: worst[0] }),
-            motion(MotionError::Count { name: "samples", value: most, min: most, max: most }),
-            Failure::Goal { spot: Place::of("goal.rest_quaternion").into() },
+            Failure::Motion(MotionError::Start),
+            Failure::Motion(MotionError::Part { part: most }),
+            Failure::Motion(MotionError::Retreat),
+            Failure::Motion(MotionError::Workspace),
+            Failure::Motion(MotionError::Value {
+                name: "speed.angular_acceleration",
+                value: worst[0],
+                max: worst[0],
+            }),
+            Failure::Motion(MotionError::Count { name: "samples", value: most, min: most, max: most }),
+            Failure::Pose { spot: Place::of("goal.rest_quaternion").into() },
             Failure::NoGoal { value: u32::MAX },
             Failure::HungWithoutField { index: most },
             Failure::Waypoints { needed: most, given: most },

@@ -2,6 +2,7 @@
 //!
 //! [`hangpose_detail`]: crate::hangpose_detail
 
+use crate::motion::motion_place;
 use crate::status::*;
 use core::fmt::{Display, Formatter};
 use hangpose_core::ParamsError;
@@ -35,8 +36,8 @@ pub(crate) enum Failure {
     ManyHung { count: u32 },
     Listed { index: usize, fault: ObjectFault },
     NotSettled,
-    Motion { error: MotionError, spot: Spot },
-    Goal { spot: Spot },
+    Motion(MotionError),
+    Pose { spot: Spot },
     NoGoal { value: u32 },
     HungWithoutField { index: usize },
     Waypoints { needed: usize, given: usize },
@@ -129,8 +130,8 @@ impl Reason for Failure {
             } => HANGPOSE_ERROR_INDEX,
             Self::Choice { .. }
             | Self::NotSettled
-            | Self::Motion { .. }
-            | Self::Goal { .. }
+            | Self::Motion(_)
+            | Self::Pose { .. }
             | Self::NoGoal { .. }
             | Self::Params(_)
             | Self::Request { .. }
@@ -182,7 +183,8 @@ impl Reason for Failure {
             Self::Cloud(error) => cloud_place(error),
             Self::Params(error) => params_place(error),
             Self::NoDistanceField => Place::of("object"),
-            Self::Request { spot, .. } | Self::Motion { spot, .. } | Self::Goal { spot } => spot.into(),
+            Self::Request { spot, .. } | Self::Pose { spot } => spot.into(),
+            Self::Motion(error) => motion_place(error),
             Self::NoGoal { value } => Place::of("goal.has_pose").value(f64::from(value)).range([1.0; 2]),
             Self::HungWithoutField { index } => {
                 Place { index: Some(index), ..Place::of("request.hung.object") }
@@ -372,8 +374,8 @@ impl Display for Failure {
             Self::NotSettled => f.write_str(
                 "params.settle is 0, and without a release nothing keeps the objects apart: analyse the models with settle = 1, and pass those params",
             ),
-            Self::Motion { error, .. } => error.fmt(f),
-            Self::Goal { spot } => write!(
+            Self::Motion(error) => error.fmt(f),
+            Self::Pose { spot } => write!(
                 f,
                 "{} is no part of a pose: pass metres within ±{MAX_COORDINATE} and the quaternion x, y, z, w of a rotation, which are numbers",
                 spot.field
@@ -455,6 +457,12 @@ impl From<PredictError> for Failure {
     }
 }
 
+impl From<MotionError> for Failure {
+    fn from(error: MotionError) -> Self {
+        Self::Motion(error)
+    }
+}
+
 impl From<PlanError> for Failure {
     fn from(error: PlanError) -> Self {
         match error {
@@ -463,9 +471,9 @@ impl From<PlanError> for Failure {
             PlanError::NoDistanceField { hung: None } => Self::NoDistanceField,
             PlanError::NoDistanceField { hung: Some(index) } => Self::HungWithoutField { index },
             PlanError::TooManyWaypoints { needed, given } => Self::Waypoints { needed, given },
-            // The request and the motion of a caller were checked before.
+            // The request of a caller was checked before.
             PlanError::Request(error) => Self::Request { error, spot: Place::of("request").into() },
-            PlanError::Motion(error) => Self::Motion { error, spot: Place::of("motion").into() },
+            PlanError::Motion(error) => error.into(),
         }
     }
 }

@@ -1,9 +1,8 @@
 //! A pose of C as the goal of a path.
 
 use crate::border::input;
-use crate::failure::{Failure, Place};
-use crate::pose::{hangpose_pose, pose_of};
-use hangpose_core::geometry::{MAX_COORDINATE, Pose};
+use crate::failure::Failure;
+use crate::pose::{checked_pose, hangpose_pose};
 use hangpose_core::hanging::{HangingPose, Rest};
 
 /// Name of the argument in the header.
@@ -25,29 +24,14 @@ pub(crate) unsafe fn goal(pointer: *const hangpose_pose) -> Result<HangingPose, 
     if goal.has_pose != 1 {
         return Err(Failure::NoGoal { value: goal.has_pose });
     }
-    let release = pose("goal.position", goal.position, "goal.quaternion", goal.quaternion)?;
+    let pose = checked_pose(("goal.position", goal.position), ("goal.quaternion", goal.quaternion))?;
     let rest = match goal.has_rest {
         0 => None,
-        1 => Some(Rest::at(pose(
-            "goal.rest_position",
-            goal.rest_position,
-            "goal.rest_quaternion",
-            goal.rest_quaternion,
+        1 => Some(Rest::at(checked_pose(
+            ("goal.rest_position", goal.rest_position),
+            ("goal.rest_quaternion", goal.rest_quaternion),
         )?)),
         value => return Err(Failure::Choice { field: "goal.has_rest", value, most: 1 }),
     };
-    Ok(HangingPose { pose: release, rest, matched: None })
-}
-
-fn pose(
-    position_field: &'static str,
-    position: [f32; 3],
-    quaternion_field: &'static str,
-    quaternion: [f32; 4],
-) -> Result<Pose, Failure> {
-    let wrong = |place: Place| Failure::Goal { spot: place.into() };
-    if !position.iter().all(|x| x.abs() <= MAX_COORDINATE) {
-        return Err(wrong(Place::of(position_field).coordinate(None, position)));
-    }
-    pose_of(position, quaternion).ok_or_else(|| wrong(Place::of(quaternion_field)))
+    Ok(HangingPose { pose, rest, matched: None })
 }

@@ -1,10 +1,10 @@
 use crate::border::{DETAIL, Public, Region, check, check_size, elements, keep_apart, report};
 use crate::detail::hangpose_detail;
 use crate::failure::{Failure, Place};
-use crate::pose::pose_of;
+use crate::pose::checked_pose;
 use crate::status::*;
 use core::ffi::c_void;
-use hangpose_core::geometry::{Aabb, MAX_COORDINATE, Pose};
+use hangpose_core::geometry::{Aabb, Pose};
 use hangpose_core::hanging::Distance;
 use hangpose_core::motion::{Capsule, Gripper, Motion, MotionError, Speed};
 
@@ -191,7 +191,10 @@ impl hangpose_motion {
             value => Err(Failure::Choice { field, value, most: 1 }),
         };
         let start = match is_chosen("motion.has_start", self.has_start)? {
-            true => Some(self.start()?),
+            true => Some(checked_pose(
+                ("motion.start_position", self.start_position),
+                ("motion.start_quaternion", self.start_quaternion),
+            )?),
             false => None,
         };
         let (min, max) = (self.workspace_low.into(), self.workspace_high.into());
@@ -214,17 +217,8 @@ impl hangpose_motion {
         };
         match motion.validate() {
             Ok(()) => Ok(motion),
-            Err(error) => Err(Failure::Motion { error, spot: self.place(error).into() }),
+            Err(error) => Err(error.into()),
         }
-    }
-
-    fn start(&self) -> Result<Pose, Failure> {
-        let wrong = |place: Place| Failure::Motion { error: MotionError::Start, spot: place.into() };
-        if !self.start_position.iter().all(|x| x.abs() <= MAX_COORDINATE) {
-            return Err(wrong(Place::of("motion.start_position").coordinate(None, self.start_position)));
-        }
-        pose_of(self.start_position, self.start_quaternion)
-            .ok_or_else(|| wrong(Place::of("motion.start_quaternion")))
     }
 
     /// Whether the object may be at a pose.
@@ -245,32 +239,28 @@ impl hangpose_motion {
         let parts = Region::read(PARTS, self.parts, self.part_count as usize);
         [Region::read(Self::NAME, self, 1), parts]
     }
-
-    /// Where the error is.
-    fn place(&self, error: MotionError) -> Place {
-        match error {
-            MotionError::Start => Place::of("motion.has_start"),
-            MotionError::Part { part } => Place { index: Some(part), ..Place::of(PARTS) },
-            MotionError::NoParts => Place::of("motion.part_count"),
-            MotionError::Retreat => Place::of("motion.retreat"),
-            MotionError::Workspace => {
-                let (low, high) = (self.workspace_low, self.workspace_high);
-                let axis = (0..3).find(|&i| !(low[i] < high[i])).unwrap_or(0);
-                let range = [f64::NEG_INFINITY, f64::from(high[axis])];
-                Place::of("motion.workspace_low").value(f64::from(low[axis])).range(range)
-            }
-            MotionError::Value { name, value, max } => {
-                Place::of(field(name)).value(f64::from(value)).range([0.0, f64::from(max)])
-            }
-            MotionError::Count { name, value, min, max } => {
-                Place::of(field(name)).value(value as f64).range([min as f64, max as f64])
-            }
-        }
-    }
 }
 
 /// Name of the array of parts in messages.
 const PARTS: &str = "motion.parts";
+
+/// Where in a motion the error is.
+pub(crate) fn motion_place(error: MotionError) -> Place {
+    match error {
+        // The start was checked before.
+        MotionError::Start => Place::of("motion.has_start"),
+        MotionError::Part { part } => Place { index: Some(part), ..Place::of(PARTS) },
+        MotionError::NoParts => Place::of("motion.part_count"),
+        MotionError::Retreat => Place::of("motion.retreat"),
+        MotionError::Workspace => Place::of("motion.workspace_low"),
+        MotionError::Value { name, value, max } => {
+            Place::of(field(name)).value(f64::from(value)).range([0.0, f64::from(max)])
+        }
+        MotionError::Count { name, value, min, max } => {
+            Place::of(field(name)).value(value as f64).range([min as f64, max as f64])
+        }
+    }
+}
 
 /// The field in C for a field of the core.
 fn field(name: &str) -> &'static str {
