@@ -27,9 +27,9 @@ use hangpose_core::motion::{PlanFailure, Reachable, Task, Waypoint, predict_reac
 /// Does what hangpose_predict does, then plans a path to one pose after another, best first, until one has a path, as
 /// hangpose_plan_path does. The models must have been analysed with hangpose_params.voxels.
 ///
-/// `failures` is an array of `pose_capacity` structs, or null; failures[i] says whether poses[i] has a path, and if not,
-/// why. `failure_size` is sizeof(hangpose_plan_failure). `plan` and `waypoints` are those of the last pose for which a path
-/// was planned, poses[plan->pose_index]. `memory` is working memory of at least hangpose_reachable_bytes. Set
+/// `failures` is an array of `pose_capacity` structs, or null: for each of `poses` whether it has a path, and if not, why.
+/// `failure_size` is sizeof(hangpose_plan_failure). `plan` and `waypoints` are those of the last pose for which a path was
+/// planned, whose index is plan->pose_index. `memory` is working memory of at least hangpose_reachable_bytes. Set
 /// prediction->struct_size and plan->struct_size before the call. A work limit of `monitor` holds for the prediction and
 /// for each of the plans.
 ///
