@@ -107,7 +107,7 @@ pub(super) const DEPARTURE_TIME: f32 = 0.1;
 ///
 /// Larger: fewer patches, less time, and small features such as the lip at a bar's end go unseen. Smaller:
 /// more patches and more time. Chosen by hand; `docs/MECHANICS.md` says which lips are seen.
-pub(super) const REPRESENTATIVE_SPACING: f32 = 0.0025;
+pub(crate) const REPRESENTATIVE_SPACING: f32 = 0.0025;
 /// Minimum cosine between the normals of a representative and of a point that it stands for: about 25
 /// degrees.
 ///

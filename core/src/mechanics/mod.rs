@@ -30,6 +30,7 @@ mod unseen;
 pub(crate) use body::Body;
 pub(crate) use clearance::{first_within, is_off_surface};
 pub use constants::GRAVITY;
+pub(crate) use constants::REPRESENTATIVE_SPACING;
 pub(crate) use gap::{Gap, gap_to_patch};
 pub(crate) use kind::kind_of;
 pub use kind::{Kind, Kinds};

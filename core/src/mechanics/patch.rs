@@ -16,7 +16,7 @@ use bytemuck::{Pod, Zeroable};
 #[repr(C)]
 pub(crate) struct Patch {
     /// Unit normal, out of the solid.
-    pub(super) normal: Vector,
+    pub(crate) normal: Vector,
     /// Unit tangent in the principal direction of least curvature, as along a bar.
     pub(super) along: Vector,
     /// Half extents along and across, metres. Of a wire, the second one is the radius.

@@ -8,15 +8,17 @@
 use super::end::End;
 use super::placement::Placement;
 use super::space::{Space, Touch, Touches, spacing_of};
-use crate::geometry::{Aabb, Point, PointTree, Pose, Vector};
-use crate::mechanics::Body;
+use crate::geometry::{Aabb, Point, Pose, Vector};
+use crate::mechanics::{Body, REPRESENTATIVE_SPACING, Support};
 use crate::memory::{Arena, array_bytes, larger};
 use crate::monitor::Meter;
 use crate::perception::far_side;
 use bytemuck::{Pod, Zeroable};
 
-/// Cells of the object's grid along its largest extent.
+/// Cells of the object's grid along each axis.
 const CELLS: usize = 64;
+/// Largest edge of a cell, metres: chords from cell to cell must not cut into a bar. Loops wider than the grid are not found.
+const LARGEST_CELL: f32 = 0.0015;
 /// Cells of the object that are looked at, at most. More than a thin-walled object has.
 const MAX_CELLS: usize = 1 << 16;
 /// Distance from the centre of a cell to its corners, in cells: what is closer may be in it.
@@ -24,6 +26,15 @@ const HALF_DIAGONAL: f32 = 0.87;
 /// Distance between points of the supporter that belong together, in multiples of the spacing. Of points that are sampled at
 /// random, one in thousands is farther from all others.
 const LINK: f32 = 3.0;
+/// The same at least, metres: patches are as far apart as that.
+const LEAST_REACH: f32 = 2.0 * REPRESENTATIVE_SPACING;
+/// Largest distance between points that belong together, metres. In sparser clouds the mouths of hooks would be closed.
+const COARSEST: f32 = 0.01;
+/// Cosine between the normal of a patch and the way to another one above which it faces that.
+const FACING: f32 = 0.5;
+/// Distance from the object halfway between two points of it, in neighbouring cells, up to which they are joined, as a share of a
+/// cell: what is bent lies beside its chord.
+const BESIDE_CHORD: f32 = 0.15;
 /// Most points of the curve in the object.
 const MAX_CURVE: usize = 4 * CELLS;
 /// Distance within which object and supporter touch, metres: more than that of a release pose.
@@ -51,15 +62,18 @@ pub(super) fn link(
     space.collect(at, &mut touches, meter)?;
     let (support, pose) = (space.obstacles.support, &at.pose(&space.moving.centre));
     let Some(body) = &space.moving.body else { return Ok(None) };
-    let reach = LINK * spacing_of(&support.tree);
+    let reach = (LINK * spacing_of(&support.tree)).max(LEAST_REACH);
+    if reach > COARSEST {
+        return Ok(None);
+    }
     for touch in &touches.list {
         let Some(bar) = support.bar_near(&touch.at, &touch.normal) else { continue };
         let mut curve = Curve::new();
-        let grid = Grid::around(body);
+        let grid = Grid::around(body, &(pose.inverse() * touch.at));
         if grid.curve_around(pose, touch, &bar, &mut curve, arena.scratch(), meter)?
-            && goes_through(&support.tree, touch, reach, &curve, arena.scratch(), meter)?
+            && goes_through(support, touch, reach, &curve, arena.scratch(), meter)?
         {
-            return Ok(Some(reach.max(2.0 * HALF_DIAGONAL * grid.cell)));
+            return Ok(Some(reach.max(2.0 * grid.between)));
         }
     }
     Ok(None)
@@ -87,20 +101,23 @@ impl Cell {
     const ROOT: u8 = 6;
 }
 
-/// Cubes that cover the object, in its coordinates.
+/// Cubes around a place where the object touches, in its coordinates.
 struct Grid<'b> {
     body: &'b Body<'b>,
     origin: Point,
     /// Edge length, metres.
     cell: f32,
+    /// Distance from the object halfway between two points of it up to which they are joined, metres.
+    between: f32,
 }
 
 impl<'b> Grid<'b> {
-    fn around(body: &'b Body<'b>) -> Self {
-        let aabb = body.surface.aabb();
-        // A cell on either side is left free.
-        let cell = body.extent / (CELLS - 2) as f32;
-        Self { body, origin: aabb.min - Vector::repeat(cell), cell }
+    /// Around a point of the object.
+    fn around(body: &'b Body<'b>, point: &Point) -> Self {
+        // A small object with a cell to spare on either side.
+        let cell = (2.0 * body.extent / (CELLS - 2) as f32).min(LARGEST_CELL);
+        let between = (BESIDE_CHORD * cell).max(body.field.voxel_size());
+        Self { body, origin: point - Vector::repeat(0.5 * CELLS as f32 * cell), cell, between }
     }
 
     fn index(&self, place: [usize; 3]) -> usize {
@@ -176,6 +193,9 @@ impl<'b> Grid<'b> {
                     cells[beside].state = Cell::EMPTY;
                     continue;
                 };
+                if self.body.field.distance(&nalgebra::center(&here, &there)) > self.between {
+                    continue;
+                }
                 let turns = cells[index].turns.saturating_add(turn(flat(&here), flat(&there)));
                 if cells[beside].state == Cell::UNKNOWN {
                     if count == queue.len() {
@@ -218,9 +238,9 @@ fn turn([x, y]: [f32; 2], [u, v]: [f32; 2]) -> i8 {
     }
 }
 
-/// Whether a closed way along points of the supporter, of steps of at most `reach` metres, goes through a closed curve.
+/// Whether a closed way along patches of the supporter, of steps of at most `reach` metres, goes through a closed curve.
 fn goes_through(
-    tree: &PointTree,
+    support: &Support,
     touch: &Touch,
     reach: f32,
     curve: &[Point],
@@ -228,22 +248,33 @@ fn goes_through(
     meter: &mut Meter,
 ) -> Result<bool, End> {
     const UNKNOWN: i8 = i8::MIN;
-    let (mut arena, points) = (arena, tree.points());
-    let passes = arena.unset::<i8>(points.len())?;
-    let queue = arena.unset::<u32>(points.len())?;
+    let (mut arena, tree, patches) = (arena, &support.tree, support.patches);
+    let passes = arena.unset::<i8>(patches.len())?;
+    let queue = arena.unset::<u32>(patches.len())?;
     passes.fill(UNKNOWN);
     let sum: Vector = curve.iter().map(|point| point.coords).sum();
     let disc = Disc { curve, apex: Point::from(sum / curve.len() as f32), aabb: Aabb::of(curve) };
-    let first = tree.nearest(&touch.at).index;
-    (passes[first as usize], queue[0]) = (0, first);
+    let distance = |patch: &usize| (support.position(*patch) - touch.at).norm_squared();
+    let Some(first) = (0..patches.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))) else {
+        return Ok(false);
+    };
+    (passes[first], queue[0]) = (0, first as u32);
     let (mut next, mut count, mut is_linked) = (0, 1, false);
     while next < count && !is_linked {
         let index = queue[next] as usize;
         next += 1;
         meter.distance_queries(1)?;
-        tree.for_each_within(&points[index], reach, |neighbour| {
-            let other = neighbour.index as usize;
-            let passed = passes[index].saturating_add(disc.passes(&points[index], &points[other]));
+        let here = support.position(index);
+        tree.for_each_within(&here, reach, |neighbour| {
+            let Ok(other) = support.representatives.binary_search(&neighbour.index) else { return };
+            let there = support.position(other);
+            // Surfaces that face each other have free space in between.
+            let step = there - here;
+            let limit = FACING * step.norm();
+            if patches[index].normal.dot(&step) > limit || patches[other].normal.dot(&-step) > limit {
+                return;
+            }
+            let passed = passes[index].saturating_add(disc.passes(&here, &there));
             if passes[other] == UNKNOWN {
                 (passes[other], queue[count]) = (passed, other as u32);
                 count += 1;

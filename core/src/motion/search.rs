@@ -43,6 +43,8 @@ const DRAG_STEPS: usize = 8;
 const DRAGS: usize = 24;
 /// Share of a step below which a dragged object is stuck.
 const STUCK: f32 = 0.2;
+/// A step that is tried where a full one is stuck, as a share of it.
+const SHORTER: f32 = 0.25;
 /// Share of its rotation with which a dragged object goes on.
 const SPIN: f32 = 0.5;
 /// Distance from the object within which a bar carries it, metres.
@@ -244,16 +246,14 @@ impl Search<'_, '_, '_> {
             let place = self.trees[tree].nodes()[at].placement;
             let leg = place.leg_to(target);
             let stride = (STRIDE * reach / leg.travel(reach)).min(1.0);
-            let keep = (ASIDE_EXCESS * self.required, self.trees[GOAL].metric().radius);
-            let leg = aside(self.space, &place, &leg.scaled(stride), keep, meter)?;
-            let way = self.space.way(&place, &leg, self.required, meter)?;
-            let next = place.after(&leg, way.share);
+            let (moved, clearance) = self.step_aside(&place, &leg.scaled(stride), meter)?;
+            let next = place.after(&moved, 1.0);
             let gain = self.trees[GOAL].metric().distance(&place, target)
                 - self.trees[GOAL].metric().distance(&next, target);
-            if way.share * leg.travel(reach) < LEAST_TRAVEL || gain < LEAST_TRAVEL {
+            if moved.travel(reach) < LEAST_TRAVEL || gain < LEAST_TRAVEL {
                 break;
             }
-            match self.add(tree, next, at, way.clearance, permit) {
+            match self.add(tree, next, at, clearance, permit) {
                 Some(node) => at = node,
                 None => break,
             }
@@ -288,19 +288,26 @@ impl Search<'_, '_, '_> {
         for _ in 0..DRAG_STEPS {
             let place = self.trees[GOAL].nodes()[at].placement;
             let wanted = leg.scaled(stride / leg.travel(reach).max(1e-9));
-            let keep = (ASIDE_EXCESS * self.required, self.trees[GOAL].metric().radius);
-            let turned = aside(self.space, &place, &wanted, keep, meter)?;
-            let way = self.space.way(&place, &turned, self.required, meter)?;
-            let moved = turned.scaled(way.share);
-            if moved.travel(reach) < STUCK * stride {
-                break;
+            let mut step = self.step_aside(&place, &wanted, meter)?;
+            if step.0.travel(reach) < STUCK * stride {
+                step = self.step_aside(&place, &wanted.scaled(SHORTER), meter)?;
+                if step.0.travel(reach) < STUCK * SHORTER * stride {
+                    break;
+                }
             }
-            let Some(node) = self.add(GOAL, place.after(&moved, 1.0), at, way.clearance, permit) else {
-                break;
-            };
+            let (moved, clearance) = step;
+            let Some(node) = self.add(GOAL, place.after(&moved, 1.0), at, clearance, permit) else { break };
             (at, leg) = (node, Leg { turn: moved.turn * SPIN, ..moved });
         }
         Ok((at != from).then_some(at))
+    }
+
+    /// Goes a step, aside where something is in the way, as far as it is free. Returns the motion and its clearance.
+    fn step_aside(&mut self, from: &Placement, wanted: &Leg, meter: &mut Meter) -> Result<(Leg, f32), Stop> {
+        let keep = (ASIDE_EXCESS * self.required, self.trees[GOAL].metric().radius);
+        let leg = aside(self.space, from, wanted, keep, meter)?;
+        let way = self.space.way(from, &leg, self.required, meter)?;
+        Ok((leg.scaled(way.share), way.clearance))
     }
 
     /// Adds a node, unless the tree is full or the caller, who has refused others, refuses it.

@@ -228,10 +228,10 @@ fn insertions_that_are_possible() {
         ("J hook", Scene::on_j_hook()),
         ("double hook", Scene::on_double_hook()),
         ("carabiner with an open gate", Scene::on_carabiner(0.9)),
-        ("box with a slot", Scene::in_box_with_slot([0.04, 0.02])),
+        ("box with a slot", Scene::in_box_with_slot([0.036, 0.036])),
     ];
     for (name, scene) in scenes {
-        match scene.plan(Motion { samples: 20_000, nodes: 16_000, ..Motion::DEFAULT }) {
+        match scene.plan(Motion { samples: 5000, nodes: 16_000, ..Motion::DEFAULT }) {
             Ok(found) => {
                 println!("{name}: {:?} {}", found.counts, found.clearance);
                 assert_hangs(&scene, &found);
@@ -250,14 +250,14 @@ fn insertions_that_are_not() {
     );
     // Too narrow for its thickness.
     let motion = Motion { samples: 300, ..Motion::DEFAULT };
-    let failure = Scene::in_box_with_slot([0.032, 0.005]).plan(motion).err();
+    let failure = Scene::in_box_with_slot([0.018, 0.018]).plan(motion).err();
     assert_eq!(failure, Some(PlanFailure::BudgetUsedUp { samples: 300 }));
 }
 
 /// No pose with a way out is taken for enclosed.
 #[test]
 fn what_is_open_is_not_enclosed() {
-    for scene in [Scene::on_peg(), Scene::on_j_hook(), Scene::on_carabiner(0.9), Scene::on_carabiner(0.15)] {
+    for scene in [Scene::on_peg(), Scene::on_j_hook(), Scene::on_carabiner(0.9), Scene::on_carabiner(0.19)] {
         // Never further than to the proof.
         let motion = Motion { workspace: None, samples: 1, ..Motion::DEFAULT };
         let failure = scene.plan(motion).err();
@@ -267,11 +267,10 @@ fn what_is_open_is_not_enclosed() {
 
 #[test]
 fn the_same_seed_gives_the_same_path() {
-    let scene = Scene::on_j_hook();
+    let scene = Scene::on_double_hook();
     let [one, same, other] =
         [1, 1, 2].map(|seed| scene.plan(Motion { seed, ..Motion::DEFAULT }).unwrap().object);
-    assert_eq!(one, same);
-    assert_ne!(one, other);
+    assert!(one == same && one != other);
 }
 
 /// Where a straight way leads to the goal, the way of the turned scene is that way, turned.
@@ -294,7 +293,7 @@ fn the_path_of_the_turned_scene_is_the_turned_path() {
 
 #[test]
 fn every_capacity_is_exhausted() {
-    let scene = Scene::on_carabiner(0.15);
+    let scene = Scene::on_carabiner(0.19);
     // Its gate is narrower than the ring is thick, and a tree of 64 nodes is full before the samples are used up.
     let failure = scene.plan(Motion { nodes: 64, ..Motion::DEFAULT }).err();
     assert_eq!(failure, Some(PlanFailure::TreesFull { nodes: 64 }));
