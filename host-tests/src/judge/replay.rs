@@ -110,7 +110,7 @@ fn opening(scene: &Scene, gripper: &Gripper, rest: &Isometry3<f64>, centre: Poin
 }
 
 /// The parts of a gripper that is opened to this share, in object coordinates.
-fn fingers(gripper: &Gripper, open: f32) -> Solid {
+pub(crate) fn fingers(gripper: &Gripper, open: f32) -> Solid {
     let part = |capsule: &Capsule| {
         let moved = |end: [f32; 3]| (Vector3::from(end) + Vector3::from(capsule.opening) * open).into();
         Part::Capsule { from: moved(capsule.from), to: moved(capsule.to), radius: capsule.radius }
@@ -119,18 +119,13 @@ fn fingers(gripper: &Gripper, open: f32) -> Solid {
 }
 
 /// A gripper as the body that moves. Its mass does not matter.
-fn hand<'a>(gripper: &'a Solid, obstacles: &'a Solid) -> Scene<'a> {
+pub(crate) fn hand<'a>(gripper: &'a Solid, obstacles: &'a Solid) -> Scene<'a> {
     let mass = Mass { mass: 1.0, inertia: [1.0; 3], frame: Isometry3::identity() };
     Scene { object: gripper, supporter: obstacles, mass, friction: 0.0, damping: 0.0, tilt: false }
 }
 
 /// The pose at a share `t` of the way between two poses: `centre` moves straight, and the body turns about a fixed axis.
-pub fn between(
-    from: &Isometry3<f64>,
-    to: &Isometry3<f64>,
-    centre: &Point3<f64>,
-    t: f64,
-) -> Isometry3<f64> {
+pub fn between(from: &Isometry3<f64>, to: &Isometry3<f64>, centre: &Point3<f64>, t: f64) -> Isometry3<f64> {
     let turn = (to.rotation * from.rotation.inverse()).scaled_axis();
     let rotation = UnitQuaternion::new(turn * t) * from.rotation;
     let (start, end) = (from * centre, to * centre);

@@ -109,7 +109,10 @@ pub fn surroundings(case: &Case, rest: &Pose, around: Around) -> Option<Surround
             let wide = both(aside);
             let tall = both(Z);
             let mut wall = Builder::default();
-            wall.cuboid([-THICKNESS, wide[0] - MARGIN, tall[0] - MARGIN], [0.0, wide[1] + MARGIN, tall[1] + MARGIN]);
+            wall.cuboid(
+                [-THICKNESS, wide[0] - MARGIN, tall[0] - MARGIN],
+                [0.0, wide[1] + MARGIN, tall[1] + MARGIN],
+            );
             made.solid = placed(&wall, [front, aside, Z], along([0.0; 3], at, front));
             made.points = samples(&made.solid, COARSE, Some(front));
         }
@@ -130,13 +133,7 @@ pub fn surroundings(case: &Case, rest: &Pose, around: Around) -> Option<Surround
     Some(made)
 }
 
-fn neighbours(
-    case: &Case,
-    rest: &Pose,
-    aside: V,
-    both: [f64; 2],
-    made: &mut Surroundings,
-) -> Option<()> {
+fn neighbours(case: &Case, rest: &Pose, aside: V, both: [f64; 2], made: &mut Surroundings) -> Option<()> {
     let joint = case.joined(rest);
     let bar = joint.map(|joint| &case.bars[joint.bar]);
     let object = extent(&case.object, rest, aside);
@@ -155,7 +152,8 @@ fn neighbours(
         return (!made.hung.is_empty()).then_some(());
     }
     let comes_aside = bar.is_some_and(|bar| {
-        dot(double(bar.direction), aside).abs() > 0.5 && !matches!(opening(case, rest), Some(OpeningKind::Rim))
+        dot(double(bar.direction), aside).abs() > 0.5
+            && !matches!(opening(case, rest), Some(OpeningKind::Rim))
     });
     let step = both[1] - both[0] + APART + if comes_aside { wide + APART } else { 0.0 };
     let points = samples(&case.supporter, FINE, None);
@@ -180,9 +178,18 @@ fn placed(builder: &Builder, axes: [V; 3], origin: V) -> Solid {
 
 /// Samples of a surface at this spacing; only those that face a direction, if it is given.
 pub fn samples(solid: &Solid, spacing: f64, facing: Option<V>) -> Vec<[f32; 3]> {
-    let count = (solid.mesh().area() / (spacing * spacing)).ceil().max(1.0) as usize;
+    let at = |index: u32| Point::from(solid.vertices[index as usize]);
+    let area = |&[a, b, c]: &[u32; 3]| f64::from((at(b) - at(a)).cross(&(at(c) - at(a))).norm()) / 2.0;
+    let area: f64 = solid.triangles.iter().map(area).sum();
+    let count = (area / (spacing * spacing)).ceil().max(1.0) as usize;
     let cloud = sample_supporter(&solid.mesh(), count, 1);
     let normals = cloud.normals.unwrap_or_default();
     let faces = |normal: [f32; 3]| facing.is_none_or(|facing| dot(double(normal), facing) > 0.5);
-    cloud.points.into_iter().zip(normals).filter(|(_, normal)| faces(*normal)).map(|(point, _)| point).collect()
+    cloud
+        .points
+        .into_iter()
+        .zip(normals)
+        .filter(|(_, normal)| faces(*normal))
+        .map(|(point, _)| point)
+        .collect()
 }

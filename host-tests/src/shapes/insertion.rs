@@ -38,7 +38,11 @@ pub fn insertion(
     let (opening, bar) = (&openings[joint.opening], &bars[joint.bar]);
     match opening.kind {
         OpeningKind::Hole if bar.has_free_end => {
-            if opening.clear_radius > bar.pass_radius { Insertion::Possible } else { Insertion::Unknown }
+            if opening.clear_radius > bar.pass_radius {
+                Insertion::Possible
+            } else {
+                Insertion::Unknown
+            }
         }
         OpeningKind::Hole => {
             let direction = double(bar.direction);
