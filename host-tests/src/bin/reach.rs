@@ -34,6 +34,9 @@ struct Arguments {
     /// A gripper with two fingers holds the lower end of the object. Enclosed pairs have none.
     #[arg(long)]
     gripper: bool,
+    /// OMPL's RRT-Connect plans the same problems, but for those with any start.
+    #[arg(long, conflicts_with = "gripper")]
+    peer: bool,
     /// Largest number of poses that are sampled.
     #[arg(long, default_value_t = Motion::DEFAULT.samples)]
     samples: usize,
@@ -64,7 +67,7 @@ fn main() -> Result<()> {
     let name = arguments.json.display().to_string();
     let mut file = std::fs::File::create(&arguments.json).with_context(|| name.clone())?;
     let motion = Motion { samples: arguments.samples, nodes: arguments.nodes, ..Motion::DEFAULT };
-    let options = Options { motion, gripper: arguments.gripper };
+    let options = Options { motion, gripper: arguments.gripper, peer: arguments.peer };
     let mut cases = made(arguments.pairs, arguments.seed);
     cases.retain(|case| case.fit == Fit::Yes);
     cases.retain(|case| arguments.only.as_ref().is_none_or(|text| case.name.contains(text)));

@@ -1,8 +1,10 @@
 //! A problem of motion: planned, and its path replayed.
 
-use super::row::{Outcome, Planned};
+use super::checker::Checker;
+use super::ompl;
+use super::row::{Outcome, Peer, Planned};
 use crate::judge::replay::replay;
-use crate::judge::{Mass, Scene};
+use crate::judge::{Bullet, Judge, Mass, Scene};
 use crate::shapes::Random;
 use crate::shapes::vector::{V, Z, cross};
 use crate::solid::Solid;
@@ -46,9 +48,14 @@ impl Problem<'_> {
             plan(&self.task, &self.goal, &mut waypoints, &mut |_| true, &mut memory, &Monitor::new())?;
         let seconds = start.elapsed().as_secs_f64();
         let answer = found.path.map(|_| ());
+        let scene = Scene { tilt: false, ..Scene::new(self.solid, self.obstacles) };
         let mut planned = Planned::new(&answer, &found.counts, seconds, bytes);
+        let mut world = Bullet::default().world(&scene);
+        planned.ends = [motion.start.as_ref(), Some(&self.goal.pose)].map(|end| {
+            world.release(&end?.cast());
+            Some(world.penetration())
+        });
         if let Ok(path) = found.path {
-            let scene = Scene { tilt: false, ..Scene::new(self.solid, self.obstacles) };
             let centre = object.centre_of_mass().into();
             let replayed = replay(&scene, &path, motion.gripper.as_ref(), centre);
             planned.waypoints = path.object.len();
@@ -56,6 +63,24 @@ impl Problem<'_> {
             planned.replay = Some(Outcome::from(&replayed));
         }
         Ok(planned)
+    }
+
+    /// What OMPL finds from the same start; `None` if none is given.
+    pub fn peer(&self) -> Option<Peer> {
+        let start = self.task.motion.start?;
+        let object = self.task.object;
+        let centre = object.centre_of_mass();
+        let reach = self.solid.vertices.iter().map(|&vertex| (Point::from(vertex) - centre).norm());
+        let reach = reach.fold(0.0, f32::max);
+        // The object may pass on all sides of what stands still.
+        let ends = [start, self.goal.pose].map(|pose| pose * centre);
+        let points = || self.obstacles.vertices.iter().map(|&vertex| Point::from(vertex)).chain(ends);
+        let low = points().reduce(|a, b| a.inf(&b))? - Vector::repeat(reach);
+        let high = points().reduce(|a, b| a.sup(&b))? + Vector::repeat(reach);
+        let checker = Checker::new(object, reach, self.obstacles, &self.goal.pose);
+        let bounds = [low.into(), high.into()];
+        let is_free = &mut |pose: &Pose| checker.is_free(pose);
+        Some(ompl::peer([&start, &self.goal.pose], bounds, (centre, reach), is_free))
     }
 }
 

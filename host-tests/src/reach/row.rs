@@ -22,7 +22,7 @@ pub struct Row {
     pub insertion: Option<Insertion>,
     /// What the planner says; `None` if there was nothing to plan.
     pub plan: Option<Planned>,
-    /// What OMPL's RRT-Connect finds with the same collision checker.
+    /// What OMPL's RRT-Connect finds.
     pub peer: Option<Peer>,
 }
 
@@ -47,6 +47,8 @@ pub struct Planned {
     pub waypoints: usize,
     /// Least distance on the path by the planner, m.
     pub clearance: f32,
+    /// Penetration depth in Bullet at the start that is given, and at the release pose, m: what the problem itself is worth.
+    pub ends: [Option<f64>; 2],
     /// What happened when the path was replayed.
     pub replay: Option<Outcome>,
 }
@@ -68,6 +70,7 @@ impl Planned {
             poses: counts.poses,
             waypoints: 0,
             clearance: 0.0,
+            ends: [None; 2],
             replay: None,
         }
     }

@@ -3,7 +3,7 @@
 use super::enclosed::{Enclosure, enclosed};
 use super::grip::Grip;
 use super::problem::{Problem, start};
-use super::row::{Planned, Row};
+use super::row::{Peer, Planned, Row};
 use super::surroundings::{Around, Surroundings, extent, front, samples, surroundings};
 use super::tree::Tree;
 use crate::judge::{Bullet, Judge, Scene};
@@ -21,7 +21,7 @@ const TOP: usize = 10;
 /// Number of points of the cloud of a tree.
 const TREE_POINTS: usize = 10_000;
 /// Spacing of the samples of a supporter that encloses, m.
-const SPACING: f64 = 0.003;
+const SPACING: f64 = 0.004;
 
 /// What is asked of the planner.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +30,14 @@ pub struct Options<'a> {
     pub motion: Motion<'a>,
     /// Whether a gripper holds the object.
     pub gripper: bool,
+    /// Whether OMPL plans the same problems, those without a gripper.
+    pub peer: bool,
+}
+
+/// What the planner finds, and what OMPL finds, if it is asked.
+fn answers(problem: &Problem, options: &Options) -> Result<(Planned, Option<Peer>), PlanError> {
+    let is_asked = options.peer && problem.task.motion.gripper.is_none();
+    Ok((problem.planned()?, if is_asked { problem.peer() } else { None }))
 }
 
 /// The rest pose, or the release pose if there is none.
@@ -108,18 +116,19 @@ pub fn pair(case: &Case, arounds: &[Around], options: &Options) -> Result<Vec<Ro
         });
         let mut random = Random::named(&case.name, 5);
         let start = start(&case.object, &obstacles, &goal.pose, front, gripper.as_ref(), &mut random);
-        let plan = |start: Option<Pose>| -> Result<Planned, PlanError> {
+        let plan = |start: Option<Pose>| -> Result<(Planned, Option<Peer>), PlanError> {
             let motion = Motion { start, gripper, ..options.motion };
             let task =
                 Task { object: &object, supporter: &supporter, request: &request, params: &params, motion };
-            Problem { solid: &case.object, obstacles: &obstacles, task, goal }.planned()
+            answers(&Problem { solid: &case.object, obstacles: &obstacles, task, goal }, options)
         };
         if *around == Around::Nothing {
             let any = format!("{}, any start", around.name());
-            rows.push(Row { scene: any, plan: Some(plan(None)?), ..row.clone() });
+            let (plan, peer) = plan(None)?;
+            rows.push(Row { scene: any, plan: Some(plan), peer, ..row.clone() });
         }
-        row.plan = Some(plan(Some(start))?);
-        rows.push(row);
+        let (plan, peer) = plan(Some(start))?;
+        rows.push(Row { plan: Some(plan), peer, ..row });
     }
     Ok(rows)
 }
@@ -169,7 +178,7 @@ pub fn tree(seed: u64, options: &Options) -> Result<Option<Row>, PlanError> {
     let motion = Motion { start: Some(start), gripper, ..options.motion };
     let task =
         Task { object: &objects[last], supporter: &supporter, request: &request, params: &params, motion };
-    let plan = Problem { solid, obstacles: &obstacles, task, goal }.planned()?;
+    let (plan, peer) = answers(&Problem { solid, obstacles: &obstacles, task, goal }, options)?;
     Ok(Some(Row {
         pair: format!("mug on tree {seed}"),
         object: "mug".into(),
@@ -178,7 +187,7 @@ pub fn tree(seed: u64, options: &Options) -> Result<Option<Row>, PlanError> {
         gripper: options.gripper,
         insertion: Some(insertion(Some(joint), &mugs[last].openings, parts, false)),
         plan: Some(plan),
-        peer: None,
+        peer,
     }))
 }
 
@@ -204,6 +213,7 @@ pub fn enclosure(
     let task =
         Task { object: &object, supporter: &supporter, request: &Request::ANY, params: &params, motion };
     let problem = Problem { solid: &made.object, obstacles: &made.supporter, task, goal };
+    let (plan, peer) = answers(&problem, options)?;
     let scene = enclosure.name();
     Ok(Some(Row {
         pair: format!("{}-{scene}-{seed}", made.object_kind),
@@ -212,7 +222,7 @@ pub fn enclosure(
         scene: if is_closed { scene.into() } else { format!("{scene}, opened") },
         gripper: false,
         insertion: Some(if is_closed { Insertion::Impossible } else { Insertion::Possible }),
-        plan: Some(problem.planned()?),
-        peer: None,
+        plan: Some(plan),
+        peer,
     }))
 }
