@@ -104,7 +104,7 @@ impl<'m> Object<'m> {
     }
 
     /// The object as mechanics sees it, if it was analysed with voxels.
-    pub(super) fn body(&self) -> Option<Body<'_>> {
+    pub(crate) fn body(&self) -> Option<Body<'_>> {
         let inverse_inertia = self.mass.inertia.try_inverse().unwrap_or_else(|| {
             // All of it on a line or in a point: as a ball of its size.
             nalgebra::Matrix3::identity() * (2.5 / (self.reach * self.reach).max(1e-9))

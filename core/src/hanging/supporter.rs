@@ -131,7 +131,7 @@ impl<'m> Supporter<'m> {
     }
 
     /// The supporter as mechanics sees it.
-    pub(super) fn support(&self) -> &Support<'m> {
+    pub(crate) fn support(&self) -> &Support<'m> {
         &self.support
     }
 

@@ -39,6 +39,12 @@ pub(crate) struct Group {
 }
 
 impl Group {
+    /// Box around the bounding sphere.
+    pub(crate) fn aabb(&self) -> Aabb {
+        let reach = Vector::repeat(self.radius);
+        Aabb { min: self.centre - reach, max: self.centre + reach }
+    }
+
     /// Indices of the patches.
     pub(crate) fn patches(&self) -> Range<usize> {
         self.first as usize..(self.first + self.count) as usize
@@ -79,7 +85,8 @@ impl<'a> Support<'a> {
         patches.saturating_add(Self::max_groups(patches))
     }
 
-    const fn max_groups(points: usize) -> usize {
+    /// Most groups of the patches of `points` points.
+    pub(crate) const fn max_groups(points: usize) -> usize {
         points.div_ceil(GROUP_SIZE)
     }
 

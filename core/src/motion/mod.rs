@@ -3,13 +3,26 @@
 //! [`plan`] plans for one pose, [`predict_reachable`] walks the ranking of a prediction until a pose has a path. A
 //! [`Task`] says what moves among what; the answer is a [`Path`] or a [`PlanFailure`].
 
+mod certify;
+mod end;
 mod error;
 mod failure;
 mod gripper;
+mod leave;
 mod path;
+mod permit;
+mod placement;
 mod plan;
 mod reachable;
+mod route;
+mod search;
+mod shorten;
+mod slide;
+mod space;
 mod task;
+mod timing;
+mod tree;
+mod written;
 
 pub use error::PlanError;
 pub use failure::{Collision, Mover, Obstacle, PlanFailure};

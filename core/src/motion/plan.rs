@@ -1,17 +1,43 @@
-//! Plans a path for one pose.
+//! Plans a path for one pose: of the object to it, and of the gripper away.
 
+use super::certify::certify;
+use super::end::End;
 use super::error::PlanError;
 use super::failure::PlanFailure;
-use super::path::{Outline, Plan, PlanCounts, Waypoint};
+use super::gripper::Gripper;
+use super::leave::{open, straight};
+use super::path::{MAX_CLEARANCE, Outline, Plan, PlanCounts, Shape, Waypoint};
+use super::permit::Permit;
+use super::placement::Placement;
+use super::route::Route;
+use super::search::{Outcome, Search, box_around, outside};
+use super::shorten::shorten;
+use super::space::{Moving, Obstacles, Space, Workspace};
 use super::task::Task;
-use crate::geometry::Pose;
-use crate::hanging::HangingPose;
-use crate::memory::{Limits, model_bytes};
+use super::timing::set_times;
+use super::tree::{Metric, Tree};
+use super::written::Written;
+use crate::geometry::{Aabb, Pose};
+use crate::hanging::{HangingPose, Hung};
+use crate::mechanics::Body;
+use crate::memory::{Arena, Limits, OutOfMemory, model_bytes};
 use crate::monitor::{Meter, Monitor};
+use crate::random::Random;
+
+/// Distance from obstacles, metres, below which a release pose or a start is in collision: less than the least gap of a release
+/// pose that is predicted, 0.1 mm.
+const LEAST_DISTANCE: f32 = 0.00005;
+/// Share of the distance at the release pose and at the start that is kept on the way.
+const KEPT: f32 = 0.5;
+/// What a radian counts against a metre, as a share of the reach of what moves: the radius of gyration of a ball is 0.63 of
+/// its radius.
+const METRIC_RADIUS: f32 = 0.5;
+/// Margin of the box in which positions are sampled around supporter, goal and start, in multiples of the object's reach.
+const MARGIN: f32 = 1.5;
 
 /// Bytes of working memory for [`plan`]: a supporter within `limits`, `scene` points of a scene and trees of `nodes`.
 pub const fn plan_bytes(limits: &Limits, scene: usize, nodes: usize) -> usize {
-    model_bytes(limits.points.saturating_add(scene).saturating_add(nodes).saturating_mul(64))
+    model_bytes(Obstacles::bytes(limits.points, scene).saturating_add(Room::bytes(nodes)))
 }
 
 /// Plans a path of the object to `goal`, and of the gripper away from it; or, to take it off, the other way.
@@ -29,19 +55,287 @@ pub fn plan<'w>(
     memory: &mut [u8],
     monitor: &Monitor,
 ) -> Result<Plan<'w>, PlanError> {
-    Ok(search(task, goal, waypoints, accepts, memory, monitor)?.on(waypoints))
+    Ok(outline(task, goal, waypoints, accepts, memory, monitor)?.on(waypoints))
 }
 
-pub(super) fn search(
+/// Plans, and leaves the waypoints in `waypoints`.
+pub(super) fn outline(
     task: &Task,
-    _goal: &HangingPose,
-    _waypoints: &mut [Waypoint],
-    _accepts: &mut dyn FnMut(&Pose) -> bool,
-    _memory: &mut [u8],
+    goal: &HangingPose,
+    waypoints: &mut [Waypoint],
+    accepts: &mut dyn FnMut(&Pose) -> bool,
+    memory: &mut [u8],
     monitor: &Monitor,
 ) -> Result<Outline, PlanError> {
+    task.params.validate()?;
+    task.request.validate()?;
     task.motion.validate()?;
-    let meter = Meter::new(monitor);
-    let path = Err(PlanFailure::BudgetUsedUp { samples: 0 });
-    Ok(Outline { path, counts: PlanCounts::default(), work: meter.work })
+    let needed = plan_bytes(&task.supporter.limits(), task.request.scene.len(), task.motion.nodes);
+    let arena = Arena::new(memory, needed)?;
+    let body = task.object.body().ok_or(PlanError::NoDistanceField { hung: None })?;
+    let is_without_field = |hung: &Hung| hung.object.distance_field().is_none();
+    if let Some(index) = task.request.hung.iter().position(is_without_field) {
+        return Err(PlanError::NoDistanceField { hung: Some(index) });
+    }
+    let mut meter = Meter::new(monitor);
+    let mut planner = Planner { task, body, counts: PlanCounts::default(), meter: &mut meter };
+    let mut permit = Permit::new(accepts, body.centre);
+    let path = match planner.run(goal, arena, waypoints, &mut permit) {
+        Ok(shape) => Ok(shape),
+        Err(End::Failure(failure)) => Err(failure),
+        Err(End::Error(error)) => return Err(error),
+    };
+    let counts = PlanCounts { asked: permit.asked, ..planner.counts };
+    meter.progress(1.0);
+    Ok(Outline { path, counts, work: meter.work })
+}
+
+/// Memory of the search.
+struct Room<'s> {
+    trees: [Tree<'s>; 2],
+    /// As the search finds it.
+    found: Route<'s>,
+    /// Shortened.
+    short: Route<'s>,
+}
+
+impl<'s> Room<'s> {
+    const fn bytes(nodes: usize) -> usize {
+        Tree::bytes(nodes).saturating_add(Route::bytes(nodes.saturating_mul(2))).saturating_mul(2)
+    }
+
+    /// Empty, and with another metric.
+    fn clear(&mut self, metric: Metric) {
+        self.trees.iter_mut().for_each(|tree| tree.clear(metric));
+    }
+
+    fn new(nodes: usize, arena: &mut Arena<'s>) -> Result<Self, OutOfMemory> {
+        let trees = [Tree::new(nodes, arena)?, Tree::new(nodes, arena)?];
+        Ok(Self { trees, found: Route::new(2 * nodes, arena)?, short: Route::new(2 * nodes, arena)? })
+    }
+}
+
+struct Planner<'q, 'a, 'm> {
+    task: &'q Task<'a>,
+    body: Body<'a>,
+    counts: PlanCounts,
+    meter: &'q mut Meter<'m>,
+}
+
+impl<'a> Planner<'_, 'a, '_> {
+    fn run(
+        &mut self,
+        goal: &HangingPose,
+        arena: Arena<'a>,
+        waypoints: &mut [Waypoint],
+        permit: &mut Permit,
+    ) -> Result<Shape, End> {
+        let (motion, body) = (&self.task.motion, self.body);
+        let rest = goal.rest.map_or(goal.pose, |rest| rest.pose);
+        let [release, resting] = [&goal.pose, &rest].map(|pose| Placement::of(pose, &body.centre));
+        let start = motion.start.map(|start| Placement::of(&start, &body.centre));
+        let moving = Moving::held(body, motion.gripper);
+        let supporter = self.task.supporter.points().aabb();
+        let ends = start.iter().chain([&release]).map(Placement::centre);
+        let region = box_around(&supporter, ends, MARGIN * moving.reach);
+
+        let mut arena = arena;
+        let obstacles = Obstacles::build(self.task, &region, &mut arena)?;
+        let mut room = Room::new(motion.nodes, &mut arena)?;
+        let workspace = motion.workspace.map(|aabb| Workspace::new(aabb, self.task.object.surface().aabb()));
+        let space = Space { moving, obstacles, workspace };
+
+        let clearance =
+            self.way_of_object(&space, &region, (&release, start, &resting), &mut room, permit)?;
+        let mut written = Written { waypoints, count: 0, step: motion.step };
+        written.route(&room.short, &body.centre);
+        let release_index = written.count - 1;
+        let lowering = release.leg_to(&resting);
+        written.leg(&release, &lowering, &body.centre);
+        let object = written.count;
+        if let Some(gripper) = motion.gripper {
+            self.way_of_gripper(&space, &gripper, (&region, &rest), &mut room)?;
+            written.route(&room.short, &gripper.centre());
+        }
+        let (needed, given) = (written.count, waypoints.len());
+        let gripper = needed - object;
+        if needed > given {
+            return Err(PlanError::TooManyWaypoints { needed, given }.into());
+        }
+        let path = Shape { object, release: release_index, gripper, clearance };
+        Ok(self.timed(path, waypoints))
+    }
+
+    /// Finds a route of the object from the start to the release pose, leaves it in `room.short`, and returns its clearance.
+    fn way_of_object(
+        &mut self,
+        space: &Space<'a>,
+        region: &Aabb,
+        (release, start, resting): (&Placement, Option<Placement>, &Placement),
+        room: &mut Room,
+        permit: &mut Permit,
+    ) -> Result<f32, End> {
+        let motion = &self.task.motion;
+        let at_goal = space.nearest(release, MAX_CLEARANCE, self.meter)?;
+        if let Some(touch) = at_goal.touch.filter(|touch| touch.distance < LEAST_DISTANCE) {
+            return Err(PlanFailure::GoalInCollision(touch.collision()).into());
+        }
+        if [release, resting].iter().any(|at| space.room_at(at) < 0.0 || !permit.accepts(at)) {
+            return Err(PlanFailure::GoalOutsideWorkspace.into());
+        }
+        let mut kept = at_goal.distance;
+        room.clear(Metric { radius: METRIC_RADIUS * space.moving.reach });
+        if let Some(start) = start {
+            let at_start = space.nearest(&start, MAX_CLEARANCE, self.meter)?;
+            if let Some(touch) = at_start.touch.filter(|touch| touch.distance < LEAST_DISTANCE) {
+                return Err(PlanFailure::StartInCollision(touch.collision()).into());
+            }
+            if space.room_at(&start) < 0.0 || !permit.accepts(&start) {
+                return Err(PlanFailure::StartOutsideWorkspace.into());
+            }
+            kept = kept.min(at_start.distance);
+            room.trees[1].add(start, None, MAX_CLEARANCE);
+        } else {
+            let supporter = self.task.supporter.points().aabb();
+            self.add_starts(space, &supporter, release, room)?;
+        }
+        room.trees[0].add(*release, None, MAX_CLEARANCE);
+        let required = (KEPT * kept).min(motion.clearance);
+        self.search(space, required, (region, release), room, permit)
+    }
+
+    /// Adds places outside of a box as starts.
+    fn add_starts(
+        &mut self,
+        space: &Space,
+        aabb: &Aabb,
+        goal: &Placement,
+        room: &mut Room,
+    ) -> Result<(), End> {
+        let clearance = self.task.motion.clearance;
+        for place in outside(aabb, goal, space.moving.reach, self.task.params.up()) {
+            if space.room_at(&place) >= 0.0
+                && space.nearest(&place, MAX_CLEARANCE, self.meter)?.distance >= clearance
+            {
+                room.trees[1].add(place, None, MAX_CLEARANCE);
+            }
+        }
+        if room.trees[1].nodes().is_empty() {
+            return Err(PlanFailure::StartOutsideWorkspace.into());
+        }
+        Ok(())
+    }
+
+    /// Finds a route between the roots of the trees, shortens it into `room.short`, and returns its clearance.
+    fn search(
+        &mut self,
+        space: &Space,
+        required: f32,
+        (region, goal): (&Aabb, &Placement),
+        room: &mut Room,
+        permit: &mut Permit,
+    ) -> Result<f32, End> {
+        let motion = &self.task.motion;
+        let Room { trees, found, short } = room;
+        let mut search = Search {
+            space,
+            required,
+            trees,
+            region: *region,
+            goal: *goal,
+            random: Random::new(motion.seed),
+            met: [0; 2],
+            counts: self.counts,
+            step: motion.step,
+        };
+        loop {
+            let outcome = search.run(motion.samples, found, permit, self.meter);
+            self.counts = search.counts;
+            match outcome? {
+                Outcome::Found => {}
+                Outcome::UsedUp => {
+                    return Err(PlanFailure::BudgetUsedUp { samples: search.counts.samples }.into());
+                }
+                Outcome::Full => return Err(PlanFailure::TreesFull { nodes: motion.nodes }.into()),
+            }
+            short.copy_from(found);
+            shorten(space, short, (required, motion.clearance), &mut search.random, self.meter)?;
+            let is_accepted = permit.refused_leg(short, &motion.step).is_none();
+            if is_accepted && let Ok(clearance) = certify(space, short, self.meter)? {
+                return Ok(clearance);
+            }
+            // What the search found has been accepted.
+            match certify(space, found, self.meter)? {
+                Ok(clearance) => {
+                    short.copy_from(found);
+                    return Ok(clearance);
+                }
+                Err(leg) => search.cut_off(leg),
+            }
+        }
+    }
+
+    /// Finds a route of the opened gripper from outside to where it is when the object rests, and leaves it in `room.short`
+    /// turned around.
+    fn way_of_gripper(
+        &mut self,
+        space: &Space<'a>,
+        gripper: &Gripper<'a>,
+        (region, rest): (&Aabb, &Pose),
+        room: &mut Room,
+    ) -> Result<(), End> {
+        let moving = Moving::gripper(*gripper);
+        let obstacles = space.obstacles.with_object(self.body, *rest);
+        let space = Space { moving, obstacles, workspace: None };
+        let at = Placement::of(rest, &moving.centre);
+        open(&space, &at, self.meter)?;
+        let kept = space.nearest(&at, MAX_CLEARANCE, self.meter)?.distance;
+        let required = (KEPT * kept).min(self.task.motion.clearance);
+        if let Some(leg) = straight(gripper, rest)
+            && space.way(&at, &leg, required, self.meter)?.is_free()
+        {
+            room.short.clear();
+            room.short.push(at, 0.0);
+            room.short.push(at.after(&leg, 1.0), 0.0);
+            return Ok(());
+        }
+        room.clear(Metric { radius: METRIC_RADIUS * moving.reach });
+        let rested = Placement::of(rest, &self.body.centre).centre();
+        let supporter = self.task.supporter.points().aabb();
+        let everything = box_around(&supporter, [rested], self.body.reach);
+        let region = box_around(region, [rested], moving.reach);
+        let anywhere = &mut |_: &Pose| true;
+        self.add_starts(&space, &everything, &at, room)?;
+        room.trees[0].add(at, None, MAX_CLEARANCE);
+        match self.search(&space, required, (&region, &at), room, &mut Permit::new(anywhere, moving.centre)) {
+            Err(End::Failure(PlanFailure::BudgetUsedUp { .. } | PlanFailure::TreesFull { .. })) => {
+                Err(PlanFailure::GripperCannotLeave.into())
+            }
+            found => {
+                room.short.reverse();
+                found.map(|_| ())
+            }
+        }
+    }
+
+    /// Sets the times, and turns the path around if the object is taken off.
+    fn timed(&self, path: Shape, waypoints: &mut [Waypoint]) -> Shape {
+        let (motion, mut path) = (&self.task.motion, path);
+        let (object, rest) = waypoints.split_at_mut(path.object);
+        let gripper = &mut rest[..path.gripper];
+        let centre = motion.gripper.map_or(self.body.centre, |gripper| gripper.centre());
+        if motion.take_off {
+            object.reverse();
+            gripper.reverse();
+            path.release = path.object - 1 - path.release;
+            set_times(gripper, 0.0, &motion.speed, &centre);
+            let ready = gripper.last().map_or(0.0, |last| last.seconds);
+            set_times(object, ready, &motion.speed, &self.body.centre);
+        } else {
+            set_times(object, 0.0, &motion.speed, &self.body.centre);
+            let hung = object.last().map_or(0.0, |last| last.seconds);
+            set_times(gripper, hung, &motion.speed, &centre);
+        }
+        path
+    }
 }

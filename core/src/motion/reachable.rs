@@ -3,7 +3,7 @@
 use super::error::PlanError;
 use super::failure::PlanFailure;
 use super::path::{Plan, Waypoint};
-use super::plan::{plan_bytes, search};
+use super::plan::{outline, plan_bytes};
 use super::task::Task;
 use crate::geometry::Pose;
 use crate::hanging::{HangingPose, Prediction, predict, predict_bytes};
@@ -46,7 +46,7 @@ pub fn predict_reachable<'p, 'w>(
     failures.fill(None);
     let (mut planned, mut last) = (0, None);
     for (pose, index) in prediction.poses.iter().zip(0..) {
-        let outline = search(task, pose, waypoints, accepts, memory, monitor)?;
+        let outline = outline(task, pose, waypoints, accepts, memory, monitor)?;
         planned = index + 1;
         last = Some(outline);
         let Some(failure) = outline.failure() else { break };

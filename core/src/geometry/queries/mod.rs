@@ -6,6 +6,7 @@ mod point_tree;
 mod ray;
 mod surface;
 
+pub(crate) use bvh::{Bvh, Node};
 pub(crate) use point_tree::PointTreeSlots;
 pub use point_tree::{Neighbour, PointTree};
 pub use surface::Surface;

@@ -1,0 +1,51 @@
+//! The last word on a route: tested on the mesh itself, which has details that the distance field lacks.
+
+use super::path::MAX_CLEARANCE;
+use super::route::Route;
+use super::space::Space;
+use crate::mechanics::is_off_surface;
+use crate::monitor::{Meter, Stop};
+
+/// Distance from obstacles, metres, below which the mesh is tested: details that the field lacks are thinner.
+const NEAR: f32 = 0.003;
+/// Largest travel between two tests of the mesh, metres.
+const STEP: f32 = 0.001;
+/// Distance from the mesh below which a point of the supporter touches it, metres.
+const LEAST_DISTANCE: f32 = 0.00005;
+
+/// The least distance from obstacles on a route, metres, a lower bound capped at [`MAX_CLEARANCE`]; or the first leg on which the
+/// supporter passes through the mesh of the object.
+pub(super) fn certify(space: &Space, route: &Route, meter: &mut Meter) -> Result<Result<f32, usize>, Stop> {
+    let moving = &space.moving;
+    let mut clearance = MAX_CLEARANCE;
+    for index in 0..route.legs() {
+        let (from, leg) = (route.places()[index], route.leg(index));
+        let travel = leg.travel(moving.reach).max(1e-9);
+        let (mut share, mut before) = (0.0, None::<(f32, f32)>);
+        loop {
+            let place = from.after(&leg, share);
+            let distance = space.nearest(&place, MAX_CLEARANCE, meter)?.distance;
+            // Between two poses the distance is least where what is left of both meets.
+            let step = before.map_or(0.0, |(share_before, _)| (share - share_before) * travel);
+            let between = before.map_or(distance, |(_, other)| 0.5 * (distance + other - step));
+            clearance = clearance.min(between).min(distance);
+            if distance < NEAR
+                && let Some(body) = &moving.body
+                && !is_off_surface(
+                    (body, space.obstacles.support),
+                    &place.pose(&moving.centre),
+                    LEAST_DISTANCE,
+                    meter,
+                )?
+            {
+                return Ok(Err(index));
+            }
+            if share >= 1.0 {
+                break;
+            }
+            before = Some((share, distance));
+            share = (share + (0.25 * distance).max(STEP) / travel).min(1.0);
+        }
+    }
+    Ok(Ok(clearance))
+}

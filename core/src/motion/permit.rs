@@ -1,0 +1,44 @@
+//! The caller's say in where the object may be.
+
+use super::placement::{Leg, Placement};
+use super::route::{Route, parts};
+use crate::geometry::{Point, Pose};
+use crate::hanging::Distance;
+
+/// Asks the caller whether poses are accepted, and counts how often.
+pub(super) struct Permit<'p> {
+    accepts: &'p mut dyn FnMut(&Pose) -> bool,
+    /// Centre of what moves, in its own coordinates.
+    centre: Point,
+    pub(super) asked: usize,
+    pub(super) refused: usize,
+}
+
+impl<'p> Permit<'p> {
+    pub(super) fn new(accepts: &'p mut dyn FnMut(&Pose) -> bool, centre: Point) -> Self {
+        Self { accepts, centre, asked: 0, refused: 0 }
+    }
+
+    pub(super) fn accepts(&mut self, at: &Placement) -> bool {
+        self.asked += 1;
+        let is_accepted = (self.accepts)(&at.pose(&self.centre));
+        self.refused += usize::from(!is_accepted);
+        is_accepted
+    }
+
+    /// Whether the caller accepts every pose of a leg, at distances of at most `step`, but the first.
+    pub(super) fn accepts_leg(&mut self, from: &Placement, leg: &Leg, step: &Distance) -> bool {
+        let parts = parts(leg, step);
+        (1..=parts).all(|part| self.accepts(&from.after(leg, part as f32 / parts as f32)))
+    }
+
+    /// The first leg of a route on which the caller refuses a pose.
+    pub(super) fn refused_leg(&mut self, route: &Route, step: &Distance) -> Option<usize> {
+        (0..route.legs()).find(|&leg| !self.accepts_leg(&route.places()[leg], &route.leg(leg), step))
+    }
+
+    /// Whether the caller has refused a pose: then it is worth asking early.
+    pub(super) fn is_picky(&self) -> bool {
+        self.refused > 0
+    }
+}

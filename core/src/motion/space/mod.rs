@@ -1,0 +1,275 @@
+//! Distances of the moving thing from everything that stands still.
+
+mod capsule;
+mod object;
+mod touch;
+mod workspace;
+
+pub(super) use touch::{Nearest, Touches};
+pub(super) use workspace::Workspace;
+
+use capsule::CapsuleQuery;
+use object::ObjectQuery;
+use touch::Collector;
+
+use super::failure::Obstacle;
+use super::gripper::Gripper;
+use super::path::MAX_CLEARANCE;
+use super::placement::{Leg, Placement};
+use super::task::Task;
+use crate::geometry::{Aabb, Bvh, Neighbour, Node, Point, PointTree, PointTreeSlots, Pose};
+use crate::hanging::Hung;
+use crate::mechanics::{Body, Support};
+use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
+use crate::monitor::{Meter, Stop};
+use crate::perception::far_side;
+
+/// What moves: an object, a gripper, or an object in a gripper.
+#[derive(Clone, Copy)]
+pub(super) struct Moving<'a> {
+    pub(super) body: Option<Body<'a>>,
+    pub(super) gripper: Option<Gripper<'a>>,
+    /// How far the gripper is open, 0 to 1.
+    pub(super) opening: f32,
+    /// A point in object coordinates, about which `reach` is taken.
+    pub(super) centre: Point,
+    /// Distance from the centre to the farthest point, metres.
+    pub(super) reach: f32,
+}
+
+/// Everything that stands still, in supporter coordinates.
+#[derive(Clone, Copy)]
+pub(super) struct Obstacles<'a> {
+    pub(super) support: &'a Support<'a>,
+    /// Over the groups of the supporter's patches.
+    groups: Option<Bvh<'a>>,
+    group_order: &'a [u32],
+    scene: Option<PointTree<'a>>,
+    /// Radius of the points of the scene, metres, so that nothing slips through between them.
+    scene_radius: f32,
+    hung: &'a [Hung<'a>],
+    /// The object at its rest pose, an obstacle for the gripper that has let it go.
+    rested: Option<(Body<'a>, Pose)>,
+}
+
+/// What moves among what.
+#[derive(Clone, Copy)]
+pub(super) struct Space<'a> {
+    pub(super) moving: Moving<'a>,
+    pub(super) obstacles: Obstacles<'a>,
+    /// The box that the object stays in, if there is one.
+    pub(super) workspace: Option<Workspace>,
+}
+
+/// Distance from a patch of the supporter, metres, up to which its nearest point is looked for; beyond it a bound will do.
+const PATCH_RANGE: f32 = 0.003;
+/// Least step between two tests whether the object is inside the workspace, metres: it may leave it by as much in between.
+const LEAST_STEP_INSIDE: f32 = 0.001;
+/// Points of a scene at which its spacing is measured.
+const SPACING_PROBES: usize = 64;
+/// Radius of the points of a scene, in multiples of the median distance between neighbours: balls of this radius around the points
+/// of a square grid overlap without gaps.
+const SPACING_RATIO: f32 = 0.75;
+/// Largest radius of the points of a scene, metres. Sparser scenes have gaps.
+const MAX_SCENE_RADIUS: f32 = 0.01;
+
+/// Groups of patches of a supporter of at most `points`.
+const fn max_groups(points: usize) -> usize {
+    Support::max_groups(far_side::max_points(points))
+}
+
+impl<'a> Moving<'a> {
+    /// The object, in the gripper if there is one.
+    pub(super) fn held(body: Body<'a>, gripper: Option<Gripper<'a>>) -> Self {
+        let of_gripper = gripper.map_or(0.0, |gripper| gripper.reach(&body.centre, 0.0));
+        let (centre, reach) = (body.centre, body.reach.max(of_gripper));
+        Self { body: Some(body), gripper, opening: 0.0, centre, reach }
+    }
+
+    /// The opened gripper alone.
+    pub(super) fn gripper(gripper: Gripper<'a>) -> Self {
+        let centre = gripper.centre();
+        let reach = gripper.reach(&centre, 0.0).max(gripper.reach(&centre, 1.0));
+        Self { body: None, gripper: Some(gripper), opening: 1.0, centre, reach }
+    }
+}
+
+impl<'a> Obstacles<'a> {
+    /// Bytes for a supporter of at most `points` and `scene` points.
+    pub(super) const fn bytes(points: usize, scene: usize) -> usize {
+        let groups = max_groups(points);
+        array_bytes::<u32>(groups)
+            .saturating_add(array_bytes::<Node>(Bvh::max_nodes(groups)))
+            .saturating_add(PointTree::bytes(scene))
+            .saturating_add(Self::scratch_bytes(points, scene))
+    }
+
+    const fn scratch_bytes(points: usize, scene: usize) -> usize {
+        let of_scene = PointTree::scratch_bytes(scene)
+            .saturating_add(array_bytes::<Point>(scene))
+            .saturating_add(array_bytes::<u32>(scene));
+        larger(array_bytes::<[f32; 3]>(max_groups(points)), of_scene)
+    }
+
+    /// Arranges the obstacles of a task for queries. Of the scene, only points in `region` matter.
+    pub(super) fn build(task: &Task<'a>, region: &Aabb, arena: &mut Arena<'a>) -> Result<Self, OutOfMemory> {
+        let (support, scene) = (task.supporter.support(), task.request.scene);
+        let groups = support.groups;
+        let order = arena.unset::<u32>(groups.len())?;
+        for (slot, index) in order.iter_mut().zip(0..) {
+            *slot = index;
+        }
+        let nodes = arena.unset::<Node>(Bvh::max_nodes(groups.len()))?;
+        let groups = match groups {
+            [] => None,
+            groups => {
+                let mut scratch = arena.scratch();
+                let centres = scratch.unset::<[f32; 3]>(groups.len())?;
+                Some(Bvh::build(order, |index| groups[index as usize].aabb(), nodes, centres))
+            }
+        };
+        let mut tree = PointTreeSlots::new(scene.len(), arena)?;
+        let mut scratch = arena.scratch();
+        let (points, names) = (scratch.unset::<Point>(scene.len())?, scratch.unset::<u32>(scene.len())?);
+        let mut count = 0;
+        for (point, name) in scene.iter().zip(0..) {
+            let point = Point::from(*point);
+            if region.contains(&point) {
+                (points[count], names[count]) = (point, name);
+                count += 1;
+            }
+        }
+        let scene = match count {
+            0 => None,
+            _ => {
+                tree.fill(&points[..count], scratch)?;
+                tree.rename(names);
+                Some(tree.into_tree())
+            }
+        };
+        let scene_radius =
+            scene.as_ref().map_or(0.0, |scene| (SPACING_RATIO * spacing_of(scene)).min(MAX_SCENE_RADIUS));
+        let hung = task.request.hung;
+        Ok(Self { support, groups, group_order: order, scene, scene_radius, hung, rested: None })
+    }
+
+    /// The same with the object at its rest pose.
+    pub(super) fn with_object(self, body: Body<'a>, rest: Pose) -> Self {
+        Self { rested: Some((body, rest)), ..self }
+    }
+
+    /// The same without the object.
+    pub(super) fn without_object(self) -> Self {
+        Self { rested: None, ..self }
+    }
+}
+
+/// Median distance between neighbours, metres.
+fn spacing_of(tree: &PointTree) -> f32 {
+    let points = tree.points();
+    let mut spacings: [f32; SPACING_PROBES] = core::array::from_fn(|k| {
+        let mut found = [Neighbour::default(); 2];
+        let nearest = tree.k_nearest(&points[k * points.len() / SPACING_PROBES], &mut found);
+        libm::sqrtf(nearest.last().map_or(0.0, |neighbour| neighbour.distance_squared))
+    });
+    spacings.sort_unstable_by(f32::total_cmp);
+    spacings[SPACING_PROBES / 2]
+}
+
+/// How far a motion is free.
+pub(super) struct Way {
+    /// Share of the motion that is free: 1 for all of it.
+    pub(super) share: f32,
+    /// Least distance on the free part, metres: a lower bound, capped at [`MAX_CLEARANCE`].
+    pub(super) clearance: f32,
+}
+
+impl Way {
+    pub(super) fn is_free(&self) -> bool {
+        self.share >= 1.0
+    }
+}
+
+impl Space<'_> {
+    /// The nearest obstacle within `limit` metres.
+    pub(super) fn nearest(&self, at: &Placement, limit: f32, meter: &mut Meter) -> Result<Nearest, Stop> {
+        let mut nearest = Nearest::within(limit);
+        self.collect(at, &mut nearest, meter)?;
+        Ok(nearest)
+    }
+
+    /// How far the object is inside the workspace, metres; negative if a part of it is outside, infinite without a workspace.
+    pub(super) fn room_at(&self, at: &Placement) -> f32 {
+        self.workspace.map_or(f32::INFINITY, |workspace| workspace.room_at(&at.pose(&self.moving.centre)))
+    }
+
+    /// Collects touches of whatever moves with whatever stands still.
+    pub(super) fn collect(
+        &self,
+        at: &Placement,
+        found: &mut impl Collector,
+        meter: &mut Meter,
+    ) -> Result<(), Stop> {
+        let Self { moving, obstacles, .. } = self;
+        let pose = &at.pose(&moving.centre);
+        if let Some(body) = &moving.body {
+            let mut query = ObjectQuery::new(body, pose, found);
+            query.supporter(obstacles);
+            if let Some(scene) = &obstacles.scene {
+                query.scene(scene, obstacles.scene_radius);
+            }
+            for (index, hung) in obstacles.hung.iter().enumerate() {
+                query.surface(hung.object.surface(), &hung.pose, Obstacle::Hung(index));
+            }
+            meter.distance_queries(query.queries)?;
+        }
+        for part in moving.gripper.iter().flat_map(|gripper| gripper.parts).enumerate() {
+            let mut query = CapsuleQuery::new(part, moving.opening, pose, found);
+            query.supporter(obstacles);
+            if let Some(scene) = &obstacles.scene {
+                query.scene(scene, obstacles.scene_radius);
+            }
+            for (index, hung) in obstacles.hung.iter().enumerate() {
+                if let Some(field) = hung.object.distance_field() {
+                    query.field(field, &hung.pose, Obstacle::Hung(index));
+                }
+            }
+            if let Some((body, pose)) = &obstacles.rested {
+                query.field(body.field, pose, Obstacle::Object);
+            }
+            meter.distance_queries(query.queries)?;
+        }
+        Ok(())
+    }
+
+    /// How far a motion from a place keeps at least `required` metres from everything. In between the poses that are tested, the
+    /// distance is at least half of that: no step moves any point by more than what is left.
+    pub(super) fn way(
+        &self,
+        from: &Placement,
+        leg: &Leg,
+        required: f32,
+        meter: &mut Meter,
+    ) -> Result<Way, Stop> {
+        let travel = leg.travel(self.moving.reach).max(1e-9);
+        let mut way = Way { share: 0.0, clearance: MAX_CLEARANCE };
+        let mut share = 0.0;
+        loop {
+            let place = from.after(leg, share);
+            let room = self.room_at(&place);
+            if room < 0.0 {
+                return Ok(way);
+            }
+            let distance = self.nearest(&place, MAX_CLEARANCE, meter)?.distance;
+            if distance < required {
+                return Ok(way);
+            }
+            way = Way { share, clearance: way.clearance.min(distance) };
+            if share >= 1.0 {
+                return Ok(way);
+            }
+            let step = (distance - 0.5 * required).min(room.max(LEAST_STEP_INSIDE));
+            share = (share + step / travel).min(1.0);
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! Waypoints in the caller's memory.
+
+use super::path::Waypoint;
+use super::placement::{Leg, Placement};
+use super::route::{Route, parts};
+use crate::geometry::Point;
+use crate::hanging::Distance;
+
+/// Waypoints that are written one after another, and counted also where there is no room for them.
+pub(super) struct Written<'w> {
+    pub(super) waypoints: &'w mut [Waypoint],
+    pub(super) count: usize,
+    /// Largest distance between two waypoints.
+    pub(super) step: Distance,
+}
+
+impl Written<'_> {
+    /// Appends the route of something with this centre, in its own coordinates.
+    pub(super) fn route(&mut self, route: &Route, centre: &Point) {
+        if let Some(first) = route.places().first() {
+            self.push(first, centre);
+        }
+        for leg in 0..route.legs() {
+            self.leg(&route.places()[leg], &route.leg(leg), centre);
+        }
+    }
+
+    /// Appends a motion from a place that has been written.
+    pub(super) fn leg(&mut self, from: &Placement, leg: &Leg, centre: &Point) {
+        let parts = parts(leg, &self.step);
+        for part in 1..=parts {
+            self.push(&from.after(leg, part as f32 / parts as f32), centre);
+        }
+    }
+
+    fn push(&mut self, place: &Placement, centre: &Point) {
+        if let Some(slot) = self.waypoints.get_mut(self.count) {
+            *slot = Waypoint { seconds: 0.0, pose: place.pose(centre) };
+        }
+        self.count += 1;
+    }
+}
