@@ -10,6 +10,9 @@ const SPACING: f64 = 0.003;
 /// Distance that is free, m, unless the goal has less room.
 const FREE: f32 = 0.0005;
 
+/// Distance by which the goal counts as free, m.
+const GOAL: f32 = 0.0002;
+
 /// Distances of an object from what stands still.
 pub struct Checker<'a> {
     object: &'a Object<'a>,
@@ -23,7 +26,7 @@ impl<'a> Checker<'a> {
     pub fn new(object: &'a Object<'a>, reach: f32, obstacles: &Solid, goal: &Pose) -> Self {
         let points = samples(obstacles, SPACING, None).into_iter().map(Point::from).collect();
         let mut checker = Self { object, reach, points, free: 0.0 };
-        checker.free = FREE.min(0.5 * checker.distance(goal));
+        checker.free = FREE.min(checker.distance(goal) - GOAL);
         checker
     }
 

@@ -58,7 +58,7 @@ const NARROWEST: f64 = 0.006;
 /// Kinds of objects that are solid.
 const SOLID: [&str; 4] = ["ball", "box", "can", "bottle"];
 /// Radius of the wires of a cage, m.
-const CAGE_WIRE: f64 = 0.002;
+const CAGE_WIRE: f64 = 0.003;
 /// Thickness of the plates of a rail and of a box, m.
 const PLATE: f64 = 0.01;
 

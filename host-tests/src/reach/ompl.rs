@@ -50,8 +50,9 @@ pub fn peer(
 ) -> Peer {
     let state = |pose: &Pose| -> [f64; 7] {
         let at = pose * centre;
-        let [x, y, z, w]: [f32; 4] = pose.rotation.coords.into();
-        [at.x, at.y, at.z, x, y, z, w].map(f64::from)
+        // OMPL takes no quaternion that is off by more than a double is.
+        let [x, y, z, w]: [f64; 4] = pose.rotation.coords.cast::<f64>().normalize().into();
+        [f64::from(at.x), f64::from(at.y), f64::from(at.z), x, y, z, w]
     };
     let problem = Problem {
         start: state(start),

@@ -179,7 +179,7 @@ fn replays(rows: &[Row]) -> String {
         let mut what: Vec<String> = deep
             .map(|(name, [depth, at])| format!("{name} {:.1} mm deep at waypoint {at:.2}", 1000.0 * depth))
             .collect();
-        if !replay.hangs {
+        if replay.hangs == Some(false) {
             what.push("does not hang".into());
         }
         let _ = writeln!(text, "- {}, {}: {}", row.pair, row.scene, what.join(", "));

@@ -1,6 +1,6 @@
 //! One line of a record: a problem, the planner's answer, and what the replay says of it.
 
-use crate::judge::replay::Replayed;
+use crate::judge::replay::{DEEPEST, Replayed};
 use crate::shapes::Insertion;
 use hangpose::motion::{PlanCounts, PlanFailure};
 use serde::{Deserialize, Serialize};
@@ -95,17 +95,24 @@ pub struct Outcome {
     pub held: [f64; 2],
     /// The same of the gripper while it opens and leaves.
     pub leaving: [f64; 2],
-    /// Whether the object hangs when it is let go at the end.
-    pub hangs: bool,
+    /// Whether the object hangs when it is let go at the end; `None` if it need not.
+    pub hangs: Option<bool>,
     /// Whether nothing is deeper than 1 mm and the object hangs.
     pub passes: bool,
+}
+
+impl Outcome {
+    /// Whether nothing is deeper than 1 mm.
+    pub fn is_free(&self) -> bool {
+        [self.way, self.lowering, self.held, self.leaving].iter().all(|[depth, _]| *depth <= DEEPEST)
+    }
 }
 
 impl From<&Replayed> for Outcome {
     fn from(replayed: &Replayed) -> Self {
         let Replayed { way, lowering, held, leaving, .. } = replayed;
         let [way, lowering, held, leaving] = [way, lowering, held, leaving].map(|it| [it.depth, it.at]);
-        let hangs = replayed.verdict.success();
+        let hangs = Some(replayed.verdict.success());
         Self { way, lowering, held, leaving, hangs, passes: replayed.passes() }
     }
 }

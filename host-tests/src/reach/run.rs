@@ -4,14 +4,14 @@ use super::enclosed::{Enclosure, enclosed};
 use super::grip::Grip;
 use super::problem::{Problem, start};
 use super::row::{Peer, Planned, Row};
-use super::surroundings::{Around, Surroundings, extent, front, samples, surroundings};
+use super::surroundings::{Around, Surroundings, extent, front, sampled, surroundings};
 use super::tree::Tree;
 use crate::judge::{Bullet, Judge, Scene};
 use crate::shapes::vector::{Z, double, unit};
 use crate::shapes::{Insertion, Random, insertion, joined};
 use crate::solid::Solid;
 use crate::tables::case::Case;
-use hangpose::geometry::{Cloud, Pose};
+use hangpose::geometry::Pose;
 use hangpose::hanging::{HangingPose, Hung, Object, Request, Supporter, predict_bytes, predict_many};
 use hangpose::motion::{Motion, PlanError, Task};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses, sample_supporter};
@@ -21,7 +21,7 @@ const TOP: usize = 10;
 /// Number of points of the cloud of a tree.
 const TREE_POINTS: usize = 10_000;
 /// Spacing of the samples of a supporter that encloses, m.
-const SPACING: f64 = 0.004;
+const SPACING: f64 = 0.003;
 
 /// What is asked of the planner.
 #[derive(Clone, Copy, Debug)]
@@ -203,8 +203,8 @@ pub fn enclosure(
     let (monitor, mut memory, mut more_memory) = (Monitor::new(), Vec::new(), Vec::new());
     let object =
         analyze_object(&made.object.mesh(), &params, &mut memory, &monitor).expect("memory is enough");
-    let points = samples(&made.supporter, SPACING, None);
-    let cloud = Cloud::new(&points, None).expect("samples are valid");
+    let cloud = sampled(&made.supporter, SPACING);
+    let cloud = cloud.cloud().expect("samples are valid");
     let supporter = analyze_supporter(&cloud, &params, &mut more_memory, &monitor).expect("memory is enough");
     let goal = HangingPose { pose: made.pose, ..HangingPose::default() };
     let mut random = Random::named("start", seed);
@@ -213,7 +213,11 @@ pub fn enclosure(
     let task =
         Task { object: &object, supporter: &supporter, request: &Request::ANY, params: &params, motion };
     let problem = Problem { solid: &made.object, obstacles: &made.supporter, task, goal };
-    let (plan, peer) = answers(&problem, options)?;
+    let (mut plan, peer) = answers(&problem, options)?;
+    // The pose is free, but need not be one that hangs.
+    if let Some(replay) = &mut plan.replay {
+        (replay.hangs, replay.passes) = (None, replay.is_free());
+    }
     let scene = enclosure.name();
     Ok(Some(Row {
         pair: format!("{}-{scene}-{seed}", made.object_kind),

@@ -7,6 +7,7 @@ use crate::shapes::{Builder, OpeningKind};
 use crate::solid::Solid;
 use crate::tables::case::Case;
 use clap::ValueEnum;
+use hangpose::files::CloudFile;
 use hangpose::geometry::{Point, Pose};
 use hangpose::sample_supporter;
 use nalgebra::{Isometry3, Translation3};
@@ -176,20 +177,19 @@ fn placed(builder: &Builder, axes: [V; 3], origin: V) -> Solid {
     placed.finish()
 }
 
-/// Samples of a surface at this spacing; only those that face a direction, if it is given.
-pub fn samples(solid: &Solid, spacing: f64, facing: Option<V>) -> Vec<[f32; 3]> {
+/// Samples of a surface at this spacing, m, with their normals.
+pub fn sampled(solid: &Solid, spacing: f64) -> CloudFile {
     let at = |index: u32| Point::from(solid.vertices[index as usize]);
     let area = |&[a, b, c]: &[u32; 3]| f64::from((at(b) - at(a)).cross(&(at(c) - at(a))).norm()) / 2.0;
     let area: f64 = solid.triangles.iter().map(area).sum();
     let count = (area / (spacing * spacing)).ceil().max(1.0) as usize;
-    let cloud = sample_supporter(&solid.mesh(), count, 1);
-    let normals = cloud.normals.unwrap_or_default();
+    sample_supporter(&solid.mesh(), count, 1)
+}
+
+/// The points alone; only those that face a direction, if it is given.
+pub fn samples(solid: &Solid, spacing: f64, facing: Option<V>) -> Vec<[f32; 3]> {
+    let CloudFile { points, normals, .. } = sampled(solid, spacing);
+    let normals = normals.unwrap_or_default();
     let faces = |normal: [f32; 3]| facing.is_none_or(|facing| dot(double(normal), facing) > 0.5);
-    cloud
-        .points
-        .into_iter()
-        .zip(normals)
-        .filter(|(_, normal)| faces(*normal))
-        .map(|(point, _)| point)
-        .collect()
+    points.into_iter().zip(normals).filter(|(_, normal)| faces(*normal)).map(|(point, _)| point).collect()
 }
