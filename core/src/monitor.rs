@@ -71,12 +71,14 @@ pub struct Work {
 pub(crate) struct Meter<'a> {
     monitor: &'a Monitor,
     pub(crate) work: Work,
+    /// Poses tested for collision.
+    pub(crate) poses: usize,
 }
 
 impl<'a> Meter<'a> {
     pub(crate) fn new(monitor: &'a Monitor) -> Self {
         monitor.progress.store(0, Ordering::Relaxed);
-        Self { monitor, work: Work::default() }
+        Self { monitor, work: Work::default(), poses: 0 }
     }
 
     /// Shows progress, a fraction from 0 to 1.

@@ -30,13 +30,17 @@ pub(crate) fn gap_to_patch(
     (rotation, at): (&Rotation3<f32>, &Point),
     margin: f32,
 ) -> Gap {
-    let patch = &support.patches[patch];
+    let (patch, field) = (&support.patches[patch], body.field);
+    if let Err(bound) = field.sample_near(at) {
+        let least = bound - patch.reach();
+        if least > margin || !patch.is_long() {
+            // The bricks of the field cover its band. Patches overlap: what of one may be closer to the body than half of its
+            // reach from its centre, is closer to the centre of another.
+            return Gap::Beyond(least.max(bound - 0.5 * patch.reach()).max(FIELD_BAND_RATIO * field.band()));
+        }
+    }
     match nearest_on_patch(body, patch, rotation, at, margin) {
         Ok(nearest) => Gap::Near { distance: nearest.gap, at: nearest.at, gradient: nearest.gradient },
-        // Outside of the bricks of the field, which cover its band, nothing of it is within the band.
-        Err(_) => {
-            let band = (FIELD_BAND_RATIO * body.field.band()).min(margin);
-            Gap::Beyond((body.field.distance(at) - patch.reach()).max(band))
-        }
+        Err(_) => Gap::Beyond((field.distance(at) - patch.reach()).max(FIELD_BAND_RATIO * field.band())),
     }
 }

@@ -1,6 +1,8 @@
 //! A patch: a model of the supporter's surface around one of its points.
 
-use super::constants::{FILLED_RATIO, INITIAL_CURVATURE, MIN_PATCH_EXTENT, RIM_RATIO};
+use super::constants::{
+    FILLED_RATIO, INITIAL_CURVATURE, MIN_PATCH_EXTENT, PATCH_HALF_EXTENT, REPRESENTATIVE_SPACING, RIM_RATIO,
+};
 use crate::geometry::{Vector, unit_or};
 use bytemuck::{Pod, Zeroable};
 
@@ -31,6 +33,9 @@ pub(crate) struct Patch {
 const FACING_NORMALS: f32 = 0.7;
 /// Curvature across a bar beyond that along it, 1/m: that of a bar of 4 cm radius. Flatter surfaces have no direction.
 const BAR_CURVATURE: f32 = 25.0;
+
+/// Half extent, metres, of patches that are long: half as much again as in a dense cloud.
+const LONG: f32 = 1.5 * PATCH_HALF_EXTENT * REPRESENTATIVE_SPACING;
 
 impl Patch {
     /// Bit of [`ends`](Self::ends) that marks a wire: the patch is the whole cylinder around it.
@@ -133,6 +138,11 @@ impl Patch {
             let reach = axis * (FILLED_RATIO * extent);
             [reach - inwards, -reach - inwards]
         })
+    }
+
+    /// Whether the patch is longer than those of a dense cloud, so that its middle tells little of its ends.
+    pub(super) fn is_long(&self) -> bool {
+        self.extents[0].max(self.extents[1]) > LONG
     }
 
     /// Radius of the wire, metres; 0 if the patch is not that of a wire.

@@ -15,8 +15,12 @@ const LEAST_DISTANCE: f32 = 0.00005;
 
 /// The least distance from obstacles on a route, metres, a lower bound capped at [`MAX_CLEARANCE`]; or the first leg on which the
 /// supporter passes through the mesh of the object.
-pub(super) fn certify(space: &Space, route: &Route, meter: &mut Meter) -> Result<Result<f32, usize>, Stop> {
-    let moving = &space.moving;
+pub(super) fn certify(
+    space: &mut Space,
+    route: &Route,
+    meter: &mut Meter,
+) -> Result<Result<f32, usize>, Stop> {
+    let moving = space.moving;
     let mut clearance = MAX_CLEARANCE;
     for index in 0..route.legs() {
         let (from, leg) = (route.places()[index], route.leg(index));

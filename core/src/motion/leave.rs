@@ -18,7 +18,7 @@ pub(super) fn open(space: &Space, at: &Placement, meter: &mut Meter) -> Result<(
         let opening = f32::from(step) / f32::from(OPENING_STEPS);
         let moving = super::space::Moving { opening, ..space.moving };
         let obstacles = if step < OPENING_STEPS { space.obstacles.without_object() } else { space.obstacles };
-        let space = Space { moving, obstacles, workspace: None };
+        let mut space = Space::of_gripper(moving, obstacles);
         let nearest = space.nearest(at, super::path::MAX_CLEARANCE, meter)?;
         if let Some(touch) = nearest.touch.filter(|touch| touch.distance <= 0.0) {
             return Err(PlanFailure::GripperCannotOpen(touch.collision()).into());

@@ -38,7 +38,7 @@ pub struct Path<'w> {
 }
 
 /// Largest [`Path::clearance`] that is told apart, metres: what is farther away does not matter.
-pub const MAX_CLEARANCE: f32 = 0.05;
+pub const MAX_CLEARANCE: f32 = 0.02;
 
 /// How much a plan took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -37,7 +37,11 @@ const MARGIN: f32 = 1.5;
 
 /// Bytes of working memory for [`plan`]: a supporter within `limits`, `scene` points of a scene and trees of `nodes`.
 pub const fn plan_bytes(limits: &Limits, scene: usize, nodes: usize) -> usize {
-    model_bytes(Obstacles::bytes(limits.points, scene).saturating_add(Room::bytes(nodes)))
+    model_bytes(
+        Obstacles::bytes(limits.points, scene)
+            .saturating_add(Space::bytes(limits.points))
+            .saturating_add(Room::bytes(nodes)),
+    )
 }
 
 /// Plans a path of the object to `goal`, and of the gripper away from it; or, to take it off, the other way.
@@ -85,7 +89,7 @@ pub(super) fn outline(
         Err(End::Failure(failure)) => Err(failure),
         Err(End::Error(error)) => return Err(error),
     };
-    let counts = PlanCounts { asked: permit.asked, ..planner.counts };
+    let counts = PlanCounts { asked: permit.asked, poses: planner.meter.poses, ..planner.counts };
     meter.progress(1.0);
     Ok(Outline { path, counts, work: meter.work })
 }
@@ -143,10 +147,10 @@ impl<'a> Planner<'_, 'a, '_> {
         let obstacles = Obstacles::build(self.task, &region, &mut arena)?;
         let mut room = Room::new(motion.nodes, &mut arena)?;
         let workspace = motion.workspace.map(|aabb| Workspace::new(aabb, self.task.object.surface().aabb()));
-        let space = Space { moving, obstacles, workspace };
+        let mut space = Space::of_object(moving, obstacles, workspace, &mut arena)?;
 
         let clearance =
-            self.way_of_object(&space, &region, (&release, start, &resting), &mut room, permit)?;
+            self.way_of_object(&mut space, &region, (&release, start, &resting), &mut room, permit)?;
         let mut written = Written { waypoints, count: 0, step: motion.step };
         written.route(&room.short, &body.centre);
         let release_index = written.count - 1;
@@ -169,7 +173,7 @@ impl<'a> Planner<'_, 'a, '_> {
     /// Finds a route of the object from the start to the release pose, leaves it in `room.short`, and returns its clearance.
     fn way_of_object(
         &mut self,
-        space: &Space<'a>,
+        space: &mut Space<'a>,
         region: &Aabb,
         (release, start, resting): (&Placement, Option<Placement>, &Placement),
         room: &mut Room,
@@ -207,7 +211,7 @@ impl<'a> Planner<'_, 'a, '_> {
     /// Adds places outside of a box as starts.
     fn add_starts(
         &mut self,
-        space: &Space,
+        space: &mut Space,
         aabb: &Aabb,
         goal: &Placement,
         room: &mut Room,
@@ -229,7 +233,7 @@ impl<'a> Planner<'_, 'a, '_> {
     /// Finds a route between the roots of the trees, shortens it into `room.short`, and returns its clearance.
     fn search(
         &mut self,
-        space: &Space,
+        space: &mut Space,
         required: f32,
         (region, goal): (&Aabb, &Placement),
         room: &mut Room,
@@ -251,6 +255,7 @@ impl<'a> Planner<'_, 'a, '_> {
         loop {
             let outcome = search.run(motion.samples, found, permit, self.meter);
             self.counts = search.counts;
+            self.counts.nodes += search.trees.iter().map(|tree| tree.nodes().len()).sum::<usize>();
             match outcome? {
                 Outcome::Found => {}
                 Outcome::UsedUp => {
@@ -259,13 +264,13 @@ impl<'a> Planner<'_, 'a, '_> {
                 Outcome::Full => return Err(PlanFailure::TreesFull { nodes: motion.nodes }.into()),
             }
             short.copy_from(found);
-            shorten(space, short, (required, motion.clearance), &mut search.random, self.meter)?;
+            shorten(search.space, short, (required, motion.clearance), &mut search.random, self.meter)?;
             let is_accepted = permit.refused_leg(short, &motion.step).is_none();
-            if is_accepted && let Ok(clearance) = certify(space, short, self.meter)? {
+            if is_accepted && let Ok(clearance) = certify(search.space, short, self.meter)? {
                 return Ok(clearance);
             }
             // What the search found has been accepted.
-            match certify(space, found, self.meter)? {
+            match certify(search.space, found, self.meter)? {
                 Ok(clearance) => {
                     short.copy_from(found);
                     return Ok(clearance);
@@ -286,7 +291,7 @@ impl<'a> Planner<'_, 'a, '_> {
     ) -> Result<(), End> {
         let moving = Moving::gripper(*gripper);
         let obstacles = space.obstacles.with_object(self.body, *rest);
-        let space = Space { moving, obstacles, workspace: None };
+        let mut space = Space::of_gripper(moving, obstacles);
         let at = Placement::of(rest, &moving.centre);
         open(&space, &at, self.meter)?;
         let kept = space.nearest(&at, MAX_CLEARANCE, self.meter)?.distance;
@@ -305,9 +310,15 @@ impl<'a> Planner<'_, 'a, '_> {
         let everything = box_around(&supporter, [rested], self.body.reach);
         let region = box_around(region, [rested], moving.reach);
         let anywhere = &mut |_: &Pose| true;
-        self.add_starts(&space, &everything, &at, room)?;
+        self.add_starts(&mut space, &everything, &at, room)?;
         room.trees[0].add(at, None, MAX_CLEARANCE);
-        match self.search(&space, required, (&region, &at), room, &mut Permit::new(anywhere, moving.centre)) {
+        match self.search(
+            &mut space,
+            required,
+            (&region, &at),
+            room,
+            &mut Permit::new(anywhere, moving.centre),
+        ) {
             Err(End::Failure(PlanFailure::BudgetUsedUp { .. } | PlanFailure::TreesFull { .. })) => {
                 Err(PlanFailure::GripperCannotLeave.into())
             }

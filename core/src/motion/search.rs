@@ -3,18 +3,20 @@
 //! One tree grows from the goal, the other from one or more starts. The last centimetres along a hook are the hard part. So a
 //! branch that is blocked does not end, but turns aside along what blocks it, as a hand feels its way out.
 
+use super::failure::Obstacle;
 use super::path::PlanCounts;
 use super::permit::Permit;
 use super::placement::{Leg, Placement, rotation_by};
 use super::route::Route;
 use super::slide::aside;
-use super::space::Space;
+use super::space::{Space, Touches};
 use super::tree::Tree;
 use crate::geometry::{Aabb, Point, Vector, fibonacci_direction};
 use crate::hanging::Distance;
 use crate::monitor::{Meter, Stop};
 use crate::random::Random;
 use core::f32::consts::TAU;
+use heapless::Vec;
 use nalgebra::{Quaternion, UnitQuaternion};
 
 /// Index of the tree that grows from the goal.
@@ -29,9 +31,26 @@ const LEAST_TRAVEL: f32 = 0.0005;
 /// Travel of a step aside, as a share of the reach of what moves.
 const STRIDE: f32 = 0.1;
 /// Steps aside of one branch.
-const STEPS_ASIDE: usize = 24;
+const STEPS_ASIDE: usize = 16;
 /// Required distance that a step aside aims at, as a multiple of the one that is tested: the step is exact to first order only.
 const ASIDE_EXCESS: f32 = 1.3;
+
+/// Least travel of a step aside when an object is dragged, metres.
+const LEAST_STRIDE: f32 = 0.002;
+/// Steps of one drag, after which the way out is tried.
+const DRAG_STEPS: usize = 8;
+/// Drags along the bar from the goal.
+const DRAGS: usize = 24;
+/// Share of a step below which a dragged object is stuck.
+const STUCK: f32 = 0.2;
+/// Share of its rotation with which a dragged object goes on.
+const SPIN: f32 = 0.5;
+/// Distance from the object within which a bar carries it, metres.
+const BAR_RANGE: f32 = 0.003;
+/// Cosine between the directions of bars that are one.
+const SAME_BAR: f32 = 0.9;
+/// Bars along which the object is dragged from the goal.
+const MAX_BARS: usize = 4;
 
 // Shares of the samples. Set by hand.
 
@@ -46,7 +65,7 @@ const CLOSE_ROTATION: f32 = 0.8;
 
 /// A search for a way between a goal and one of several starts.
 pub(super) struct Search<'q, 'a, 's> {
-    pub(super) space: &'q Space<'a>,
+    pub(super) space: &'q mut Space<'a>,
     /// Distance that is kept from everything, metres.
     pub(super) required: f32,
     /// From the goal and from the starts.
@@ -83,32 +102,106 @@ impl Search<'_, '_, '_> {
         meter: &mut Meter,
     ) -> Result<Outcome, Stop> {
         let starts = self.starts();
+        if self.counts.samples == 0 && self.leave_goal(route, permit, meter)? {
+            return Ok(Outcome::Found);
+        }
         for _ in 0..samples {
+            if self.trees.iter().any(Tree::is_full) {
+                return Ok(Outcome::Full);
+            }
             let index = self.counts.samples;
             self.counts.samples += 1;
-            // First straight to each of the starts; then two of three samples are for the tree of the goal, which is the one in
-            // narrow places.
-            let (target, grown) = if index < starts {
-                (self.trees[START].nodes()[index].placement, GOAL)
-            } else {
-                (self.sample(starts), if index % 3 == 2 { START } else { GOAL })
+            let target = self.sample(starts);
+            // Two of three samples are for the tree of the goal, which is the one in narrow places.
+            let grown = if index % 3 == 2 { START } else { GOAL };
+            let node = match index % 3 {
+                0 => self.drag_towards(&target, permit, meter)?,
+                _ => self.grow(grown, &target, permit, meter)?.map(|(node, _)| node),
             };
-            let Some((node, _)) = self.grow(grown, &target, permit, meter)? else {
-                if self.trees.iter().any(Tree::is_full) {
-                    return Ok(Outcome::Full);
-                }
-                continue;
-            };
-            let meeting = self.trees[grown].nodes()[node].placement;
-            let Some((other, true)) = self.grow(1 - grown, &meeting, permit, meter)? else { continue };
-            self.met = if grown == GOAL { [node, other] } else { [other, node] };
-            self.write(route);
-            match permit.refused_leg(route, &self.step) {
-                Some(leg) => self.cut_off(leg),
-                None => return Ok(Outcome::Found),
+            if let Some(node) = node
+                && self.meets(grown, node, route, permit, meter)?
+            {
+                return Ok(Outcome::Found);
             }
         }
         Ok(Outcome::UsedUp)
+    }
+
+    /// Tries what most often works: straight to a start, and along the bar on which the object hangs, both ways.
+    fn leave_goal(
+        &mut self,
+        route: &mut Route,
+        permit: &mut Permit,
+        meter: &mut Meter,
+    ) -> Result<bool, Stop> {
+        for start in 0..self.starts() {
+            let target = self.trees[START].nodes()[start].placement;
+            let leg = self.goal.leg_to(&target);
+            let way = self.space.way(&self.goal, &leg, self.required, meter)?;
+            if way.is_free()
+                && let Some(node) = self.add(GOAL, target, 0, way.clearance, permit)
+            {
+                self.met = [node, start];
+                self.write(route);
+                match permit.refused_leg(route, &self.step) {
+                    Some(leg) => self.cut_off(leg),
+                    None => return Ok(true),
+                }
+            }
+        }
+        for direction in self.bars(meter)? {
+            for direction in [direction, -direction] {
+                let mut at = 0;
+                let mut leg = Leg { shift: direction, turn: Vector::zeros() };
+                for _ in 0..DRAGS {
+                    let Some(node) = self.drag(at, leg, permit, meter)? else { break };
+                    let nodes = self.trees[GOAL].nodes();
+                    leg = nodes[nodes[node].parent as usize].placement.leg_to(&nodes[node].placement);
+                    at = node;
+                    if self.meets(GOAL, node, route, permit, meter)? {
+                        return Ok(true);
+                    }
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// Directions of the bars that the object is near at the goal.
+    fn bars(&mut self, meter: &mut Meter) -> Result<Vec<Vector, MAX_BARS>, Stop> {
+        let mut touches = Touches::within(BAR_RANGE);
+        let goal = self.goal;
+        self.space.collect(&goal, &mut touches, meter)?;
+        let mut bars = Vec::<Vector, MAX_BARS>::new();
+        for touch in touches.list.iter().filter(|touch| touch.obstacle == Obstacle::Supporter) {
+            let Some(bar) = self.space.obstacles.support.bar_near(&touch.at, &touch.normal) else { continue };
+            if bars.iter().all(|other| other.dot(&bar).abs() < SAME_BAR) {
+                let _ = bars.push(bar);
+            }
+        }
+        Ok(bars)
+    }
+
+    /// Connects the other tree to a new node. Returns whether that gives a route, which it writes, that the caller accepts.
+    fn meets(
+        &mut self,
+        grown: usize,
+        node: usize,
+        route: &mut Route,
+        permit: &mut Permit,
+        meter: &mut Meter,
+    ) -> Result<bool, Stop> {
+        let meeting = self.trees[grown].nodes()[node].placement;
+        let Some((other, true)) = self.grow(1 - grown, &meeting, permit, meter)? else { return Ok(false) };
+        self.met = if grown == GOAL { [node, other] } else { [other, node] };
+        self.write(route);
+        Ok(match permit.refused_leg(route, &self.step) {
+            Some(leg) => {
+                self.cut_off(leg);
+                false
+            }
+            None => true,
+        })
     }
 
     /// Number of starts: they come first in their tree.
@@ -162,6 +255,48 @@ impl Search<'_, '_, '_> {
             }
         }
         Ok((at != root).then_some((at, false)))
+    }
+
+    /// Drags the object on from the node of the goal's tree that is nearest to a target, towards the target.
+    fn drag_towards(
+        &mut self,
+        target: &Placement,
+        permit: &mut Permit,
+        meter: &mut Meter,
+    ) -> Result<Option<usize>, Stop> {
+        let Some(from) = self.trees[GOAL].nearest(target) else { return Ok(None) };
+        let leg = self.trees[GOAL].nodes()[from].placement.leg_to(target);
+        self.drag(from, leg, permit, meter)
+    }
+
+    /// Drags the object from a node of the goal's tree: it goes on in the direction in which it moved last, so that it follows
+    /// a bent bar. Returns the last node, if it moves at all.
+    fn drag(
+        &mut self,
+        from: usize,
+        leg: Leg,
+        permit: &mut Permit,
+        meter: &mut Meter,
+    ) -> Result<Option<usize>, Stop> {
+        let reach = self.space.moving.reach;
+        let stride = (STRIDE * reach).max(LEAST_STRIDE);
+        let (mut at, mut leg) = (from, leg);
+        for _ in 0..DRAG_STEPS {
+            let place = self.trees[GOAL].nodes()[at].placement;
+            let wanted = leg.scaled(stride / leg.travel(reach).max(1e-9));
+            let keep = (ASIDE_EXCESS * self.required, self.trees[GOAL].metric().radius);
+            let turned = aside(self.space, &place, &wanted, keep, meter)?;
+            let way = self.space.way(&place, &turned, self.required, meter)?;
+            let moved = turned.scaled(way.share);
+            if moved.travel(reach) < STUCK * stride {
+                break;
+            }
+            let Some(node) = self.add(GOAL, place.after(&moved, 1.0), at, way.clearance, permit) else {
+                break;
+            };
+            (at, leg) = (node, Leg { turn: moved.turn * SPIN, ..moved });
+        }
+        Ok((at != from).then_some(at))
     }
 
     /// Adds a node, unless the tree is full or the caller, who has refused others, refuses it.

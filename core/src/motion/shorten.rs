@@ -17,13 +17,14 @@ const SHORT_LEG: f32 = 0.004;
 
 /// Shortens and smooths a route. Shortcuts come no closer to obstacles than the way that they replace, or keep `clearance` metres.
 pub(super) fn shorten(
-    space: &Space,
+    space: &mut Space,
     route: &mut Route,
     (required, clearance): (f32, f32),
     random: &mut Random,
     meter: &mut Meter,
 ) -> Result<(), Stop> {
-    let shortcut = Shortcut { space, required, clearance };
+    let reach = space.moving.reach;
+    let mut shortcut = Shortcut { space, required, clearance };
     // Past as many places as possible at once, then fewer.
     let mut first = 0;
     while first + 2 <= route.legs() {
@@ -44,7 +45,7 @@ pub(super) fn shorten(
     for _ in 0..ROUNDS {
         let mut leg = 0;
         while leg + 1 < route.legs() {
-            let is_long = |leg: usize| route.leg(leg).travel(space.moving.reach) > SHORT_LEG;
+            let is_long = |leg: usize| route.leg(leg).travel(reach) > SHORT_LEG;
             let is_cut = is_long(leg)
                 && is_long(leg + 1)
                 && shortcut.between((leg, 1.0 - CUT), (leg + 1, CUT), route, meter)?;
@@ -56,7 +57,7 @@ pub(super) fn shorten(
 }
 
 struct Shortcut<'q, 'a> {
-    space: &'q Space<'a>,
+    space: &'q mut Space<'a>,
     required: f32,
     clearance: f32,
 }
@@ -65,7 +66,7 @@ impl Shortcut<'_, '_> {
     /// Replaces the part of a route between two points, each given by a leg and the share of it, by the direct way, if that is
     /// free and shorter.
     fn between(
-        &self,
+        &mut self,
         (first, from): (usize, f32),
         (last, to): (usize, f32),
         route: &mut Route,

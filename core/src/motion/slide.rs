@@ -13,7 +13,7 @@ const SWEEPS: usize = 8;
 /// The motion closest to `wanted`, in the metric that counts a radian as `radius` metres, that does not bring any touch closer than
 /// `required` metres, to first order. Touches that are closer already are moved away from.
 pub(super) fn aside(
-    space: &Space,
+    space: &mut Space,
     at: &Placement,
     wanted: &Leg,
     (required, radius): (f32, f32),

@@ -184,6 +184,42 @@ impl<'m> Bvh<'m> {
         }
     }
 
+    /// Visits the leaves that may hold something nearer than a limit, nearer ones first. `state` is handed to the closures:
+    /// `bound` gives a lower bound of the distance of everything in a node, or `None` if the node does not matter, `limit` the
+    /// limit, which may shrink, and `visit` takes the items of a leaf.
+    pub(crate) fn visit_ordered<S>(
+        &self,
+        state: &mut S,
+        mut bound: impl FnMut(&mut S, &Node) -> Option<f32>,
+        limit: impl Fn(&S) -> f32,
+        mut visit: impl FnMut(&mut S, core::ops::Range<usize>),
+    ) {
+        let mut stack = heapless::Vec::<(u32, f32), { MAX_DEPTH + 2 }>::new();
+        let mut next = bound(state, &self.nodes[0]).map(|at| (0, at));
+        while let Some((node, at)) = next {
+            let node = &self.nodes[node as usize];
+            next = None;
+            if at < limit(state) {
+                if let Some(items) = node.items() {
+                    visit(state, items);
+                } else {
+                    let [left, right] = node
+                        .children()
+                        .map(|child| Some((child, bound(state, &self.nodes[child as usize])?)));
+                    next = match (left, right) {
+                        (Some(left), Some(right)) => {
+                            let (near, far) = if right.1 < left.1 { (right, left) } else { (left, right) };
+                            let _ = stack.push(far);
+                            Some(near)
+                        }
+                        (only, None) | (None, only) => only,
+                    };
+                }
+            }
+            next = next.or_else(|| stack.pop());
+        }
+    }
+
     /// Descends from the root: `visit` looks at a node and says whether to go on to its children.
     pub(crate) fn descend(&self, visit: impl FnMut(u32, &Node) -> bool) {
         self.descend_from(0, visit);

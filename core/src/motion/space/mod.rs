@@ -3,6 +3,7 @@
 mod capsule;
 mod object;
 mod touch;
+mod track;
 mod workspace;
 
 pub(super) use touch::{Nearest, Touches};
@@ -11,6 +12,7 @@ pub(super) use workspace::Workspace;
 use capsule::CapsuleQuery;
 use object::ObjectQuery;
 use touch::Collector;
+use track::Track;
 
 use super::failure::Obstacle;
 use super::gripper::Gripper;
@@ -53,18 +55,21 @@ pub(super) struct Obstacles<'a> {
 }
 
 /// What moves among what.
-#[derive(Clone, Copy)]
 pub(super) struct Space<'a> {
     pub(super) moving: Moving<'a>,
     pub(super) obstacles: Obstacles<'a>,
     /// The box that the object stays in, if there is one.
-    pub(super) workspace: Option<Workspace>,
+    workspace: Option<Workspace>,
+    track: Track<'a>,
 }
 
 /// Distance from a patch of the supporter, metres, up to which its nearest point is looked for; beyond it a bound will do.
 const PATCH_RANGE: f32 = 0.003;
-/// Least step between two tests whether the object is inside the workspace, metres: it may leave it by as much in between.
-const LEAST_STEP_INSIDE: f32 = 0.001;
+/// Distance beyond which a lower bound is as good as the distance, metres: a step of this length is long.
+const EXACT_UP_TO: f32 = 0.008;
+/// Travel between two poses that are tested at least, metres: less than what a bar is thick. What this misses, the certificate
+/// of the whole route finds.
+const LEAST_STEP: f32 = 0.001;
 /// Points of a scene at which its spacing is measured.
 const SPACING_PROBES: usize = 64;
 /// Radius of the points of a scene, in multiples of the median distance between neighbours: balls of this radius around the points
@@ -190,9 +195,30 @@ impl Way {
     }
 }
 
-impl Space<'_> {
+impl<'a> Space<'a> {
+    /// Bytes of what it keeps beside the obstacles, for a supporter of at most `points`.
+    pub(super) const fn bytes(points: usize) -> usize {
+        Track::bytes(points)
+    }
+
+    /// An object among obstacles.
+    pub(super) fn of_object(
+        moving: Moving<'a>,
+        obstacles: Obstacles<'a>,
+        workspace: Option<Workspace>,
+        arena: &mut Arena<'a>,
+    ) -> Result<Self, OutOfMemory> {
+        let track = Track::new(obstacles.support, arena)?;
+        Ok(Self { moving, obstacles, workspace, track })
+    }
+
+    /// A gripper without an object among obstacles.
+    pub(super) fn of_gripper(moving: Moving<'a>, obstacles: Obstacles<'a>) -> Self {
+        Self { moving, obstacles, workspace: None, track: Track::none() }
+    }
+
     /// The nearest obstacle within `limit` metres.
-    pub(super) fn nearest(&self, at: &Placement, limit: f32, meter: &mut Meter) -> Result<Nearest, Stop> {
+    pub(super) fn nearest(&mut self, at: &Placement, limit: f32, meter: &mut Meter) -> Result<Nearest, Stop> {
         let mut nearest = Nearest::within(limit);
         self.collect(at, &mut nearest, meter)?;
         Ok(nearest)
@@ -205,16 +231,18 @@ impl Space<'_> {
 
     /// Collects touches of whatever moves with whatever stands still.
     pub(super) fn collect(
-        &self,
+        &mut self,
         at: &Placement,
         found: &mut impl Collector,
         meter: &mut Meter,
     ) -> Result<(), Stop> {
-        let Self { moving, obstacles, .. } = self;
+        let Self { moving, obstacles, track, .. } = self;
+        meter.poses += 1;
         let pose = &at.pose(&moving.centre);
         if let Some(body) = &moving.body {
             let mut query = ObjectQuery::new(body, pose, found);
-            query.supporter(obstacles);
+            track.move_to(at, moving.reach);
+            query.supporter(obstacles.support, track);
             if let Some(scene) = &obstacles.scene {
                 query.scene(scene, obstacles.scene_radius);
             }
@@ -245,7 +273,7 @@ impl Space<'_> {
     /// How far a motion from a place keeps at least `required` metres from everything. In between the poses that are tested, the
     /// distance is at least half of that: no step moves any point by more than what is left.
     pub(super) fn way(
-        &self,
+        &mut self,
         from: &Placement,
         leg: &Leg,
         required: f32,
@@ -268,7 +296,7 @@ impl Space<'_> {
             if share >= 1.0 {
                 return Ok(way);
             }
-            let step = (distance - 0.5 * required).min(room.max(LEAST_STEP_INSIDE));
+            let step = (distance - 0.5 * required).min(room).max(LEAST_STEP);
             share = (share + step / travel).min(1.0);
         }
     }

@@ -1,10 +1,12 @@
 //! Distances of the object from what stands still, by its signed distance field.
 
 use super::touch::{Collector, Touch};
-use super::{Obstacles, PATCH_RANGE};
-use crate::geometry::{Point, PointTree, Pose, Surface, Vector};
-use crate::mechanics::{Body, Gap, gap_to_patch};
+use super::track::Track;
+use super::{EXACT_UP_TO, PATCH_RANGE};
+use crate::geometry::{Aabb, Node, Point, PointTree, Pose, Surface, Vector};
+use crate::mechanics::{Body, Gap, Support, gap_to_patch};
 use crate::motion::failure::{Mover, Obstacle};
+use nalgebra::Rotation3;
 
 /// Most halvings of a triangle until it is as small as distances are told.
 const MAX_HALVINGS: usize = 24;
@@ -26,14 +28,25 @@ impl<'q, 'a, C: Collector> ObjectQuery<'q, 'a, C> {
         Self { body, pose, to_object: pose.inverse(), found, queries: 0 }
     }
 
-    /// Whether a ball, by its centre in object coordinates, is farther away than matters.
-    fn is_beyond(&mut self, centre: &Point, radius: f32) -> bool {
-        let limit = radius + self.found.limit();
-        if self.body.is_beyond(centre, limit) {
-            return true;
+    /// Lower bound of the distance of what is in a ball, by its centre in object coordinates; `None` if that need not be looked
+    /// at: because it is farther away than matters, or because the bound is exact enough, and is offered.
+    fn bound(&mut self, centre: &Point, radius: f32, obstacle: Obstacle) -> Option<f32> {
+        let limit = self.found.limit();
+        if self.body.is_beyond(centre, radius + limit) {
+            return None;
         }
         self.queries += 1;
-        self.body.field.distance(centre) > limit
+        let distance = self.body.field.distance(centre) - radius;
+        if distance >= EXACT_UP_TO {
+            self.offer(distance, centre, Vector::zeros(), obstacle);
+            return None;
+        }
+        (distance < limit).then_some(distance)
+    }
+
+    /// The same of a box in other coordinates, from which `to_object` leads to the object's.
+    fn bound_of_box(&mut self, aabb: &Aabb, to_object: &Pose, more: f32, obstacle: Obstacle) -> Option<f32> {
+        self.bound(&(to_object * aabb.centre()), 0.5 * aabb.diagonal() + more, obstacle)
     }
 
     fn offer(&mut self, distance: f32, at: &Point, gradient: Vector, obstacle: Obstacle) {
@@ -44,68 +57,82 @@ impl<'q, 'a, C: Collector> ObjectQuery<'q, 'a, C> {
         }
     }
 
-    pub(super) fn supporter(&mut self, obstacles: &Obstacles) {
-        let support = obstacles.support;
+    pub(super) fn supporter(&mut self, support: &Support, track: &mut Track) {
         let rotation = self.pose.rotation.to_rotation_matrix();
-        let Some(tree) = obstacles.groups else { return };
-        tree.descend(|_, node| {
-            let aabb = node.aabb();
-            if self.is_beyond(&(self.to_object * aabb.centre()), 0.5 * aabb.diagonal()) {
-                return false;
+        if let Some(before) = track.patches.get(track.nearest)
+            && before - track.travelled < self.limit()
+        {
+            self.patch(support, &rotation, track.nearest, track);
+        }
+        for (index, group) in support.groups.iter().enumerate() {
+            if track.groups[index] - track.travelled >= self.limit() {
+                continue;
             }
-            let Some(items) = node.items() else { return true };
-            for &group in &obstacles.group_order[items] {
-                let group = &support.groups[group as usize];
-                if self.is_beyond(&(self.to_object * group.centre), group.radius) {
-                    continue;
-                }
-                for patch in group.patches() {
-                    let at = self.to_object * support.position(patch);
-                    self.queries += 1;
-                    let margin = self.found.limit().min(PATCH_RANGE);
-                    match gap_to_patch(self.body, support, patch, (&rotation, &at), margin) {
-                        Gap::Near { distance, at, gradient } => {
-                            self.offer(distance, &at, gradient, Obstacle::Supporter);
-                        }
-                        Gap::Beyond(distance) => {
-                            self.offer(distance, &at, Vector::zeros(), Obstacle::Supporter);
-                        }
-                    }
-                }
+            let at = self.to_object * group.centre;
+            self.queries += 1;
+            let bound = self.body.field.distance(&at) - group.radius;
+            if bound >= EXACT_UP_TO {
+                self.offer(bound, &at, Vector::zeros(), Obstacle::Supporter);
             }
-            true
-        });
+            track.groups[index] = track.travelled + bound;
+            if bound >= self.limit() {
+                continue;
+            }
+            let mut least = f32::INFINITY;
+            for patch in group.patches() {
+                if track.patches[patch] - track.travelled < self.limit() {
+                    self.patch(support, &rotation, patch, track);
+                }
+                least = least.min(track.patches[patch]);
+            }
+            track.groups[index] = least;
+        }
+    }
+
+    fn patch(&mut self, support: &Support, rotation: &Rotation3<f32>, patch: usize, track: &mut Track) {
+        let at = self.to_object * support.position(patch);
+        self.queries += 1;
+        let before = self.limit();
+        let (distance, at, gradient) =
+            match gap_to_patch(self.body, support, patch, (rotation, &at), before.min(PATCH_RANGE)) {
+                Gap::Near { distance, at, gradient } => (distance, at, gradient),
+                Gap::Beyond(distance) => (distance, at, Vector::zeros()),
+            };
+        track.patches[patch] = track.travelled + distance;
+        self.offer(distance, &at, gradient, Obstacle::Supporter);
+        if distance < before {
+            track.nearest = patch;
+        }
+    }
+
+    fn limit(&self) -> f32 {
+        self.found.limit()
     }
 
     pub(super) fn scene(&mut self, scene: &PointTree, radius: f32) {
-        scene.bvh().descend(|_, node| {
-            let aabb = node.aabb();
-            if self.is_beyond(&(self.to_object * aabb.centre()), 0.5 * aabb.diagonal() + radius) {
-                return false;
+        let to_object = self.to_object;
+        let obstacle = |index: usize| Obstacle::Scene(scene.order()[index] as usize);
+        let bound = |query: &mut Self, node: &Node| {
+            query.bound_of_box(&node.aabb(), &to_object, radius, Obstacle::Scene(0))
+        };
+        scene.bvh().visit_ordered(self, bound, Self::limit, |query, items| {
+            for index in items {
+                let at = to_object * scene.points()[index];
+                query.queries += 1;
+                let (distance, gradient) = query.body.field.sample(&at);
+                query.offer(distance - radius, &at, gradient, obstacle(index));
             }
-            for index in node.items().into_iter().flatten() {
-                let at = self.to_object * scene.points()[index];
-                self.queries += 1;
-                let (distance, gradient) = self.body.field.sample(&at);
-                let obstacle = Obstacle::Scene(scene.order()[index] as usize);
-                self.offer(distance - radius, &at, gradient, obstacle);
-            }
-            true
         });
     }
 
     /// Another object, by its surface and its pose.
     pub(super) fn surface(&mut self, surface: &Surface, pose: &Pose, obstacle: Obstacle) {
         let between = self.to_object * pose;
-        surface.bvh().descend(|_, node| {
-            let aabb = node.aabb();
-            if self.is_beyond(&(between * aabb.centre()), 0.5 * aabb.diagonal()) {
-                return false;
+        let bound = |query: &mut Self, node: &Node| query.bound_of_box(&node.aabb(), &between, 0.0, obstacle);
+        surface.bvh().visit_ordered(self, bound, Self::limit, |query, items| {
+            for triangle in &surface.triangles()[items] {
+                query.triangle(triangle.map(|corner| between * corner), obstacle);
             }
-            for triangle in node.items().into_iter().flat_map(|items| &surface.triangles()[items]) {
-                self.triangle(triangle.map(|corner| between * corner), obstacle);
-            }
-            true
         });
     }
 
@@ -116,7 +143,7 @@ impl<'q, 'a, C: Collector> ObjectQuery<'q, 'a, C> {
         while let Some([a, b, c]) = waiting.pop() {
             let centre = Point::from((a.coords + b.coords + c.coords) / 3.0);
             let radius = [a, b, c].iter().map(|corner| (corner - centre).norm()).fold(0.0, f32::max);
-            if self.is_beyond(&centre, radius) {
+            if self.bound(&centre, radius, obstacle).is_none() {
                 continue;
             }
             if radius < SMALLEST_PIECE || waiting.len() + 2 > MAX_HALVINGS {

@@ -1,0 +1,56 @@
+//! What has been learnt from the poses before: how near each part of the supporter may be by now.
+
+use crate::mechanics::Support;
+use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::motion::placement::Placement;
+use crate::perception::far_side;
+
+/// Lower bounds of the distances of the supporter's patches and groups of patches from the object.
+///
+/// A search tests poses that are close to each other, one after another. A part that was found at some distance need not be looked at
+/// again until the object has travelled that far, whichever way.
+pub(in crate::motion) struct Track<'s> {
+    /// For each group, how far the object must have travelled, all in all, before anything of it may be touched, metres.
+    pub(super) groups: &'s mut [f32],
+    /// The same for each patch.
+    pub(super) patches: &'s mut [f32],
+    /// The patch that was the nearest, which is likely to be it again.
+    pub(super) nearest: usize,
+    at: Option<Placement>,
+    /// How far the object has travelled, metres: for each of its points this is an upper bound.
+    pub(super) travelled: f32,
+}
+
+/// Travel after which the counter starts again, metres: single precision still tells hundredths of a millimetre.
+const MAX_TRAVEL: f32 = 100.0;
+
+impl<'s> Track<'s> {
+    /// Bytes for a supporter of at most `points`.
+    pub(super) const fn bytes(points: usize) -> usize {
+        let points = far_side::max_points(points);
+        array_bytes::<f32>(points).saturating_add(array_bytes::<f32>(Support::max_groups(points)))
+    }
+
+    pub(super) fn new(support: &Support, arena: &mut Arena<'s>) -> Result<Self, OutOfMemory> {
+        let (groups, patches) = (arena.unset(support.groups.len())?, arena.unset(support.patches.len())?);
+        Ok(Self { groups, patches, nearest: 0, at: None, travelled: MAX_TRAVEL })
+    }
+
+    /// For what has no distance field.
+    pub(super) fn none() -> Self {
+        Self { groups: &mut [], patches: &mut [], nearest: 0, at: None, travelled: MAX_TRAVEL }
+    }
+
+    /// Moves on to a placement of an object of this reach.
+    pub(super) fn move_to(&mut self, at: &Placement, reach: f32) {
+        if let Some(before) = self.at {
+            self.travelled += before.leg_to(at).travel(reach);
+        }
+        self.at = Some(*at);
+        if self.travelled >= MAX_TRAVEL {
+            self.travelled = 0.0;
+            self.groups.fill(f32::NEG_INFINITY);
+            self.patches.fill(f32::NEG_INFINITY);
+        }
+    }
+}
