@@ -4,7 +4,8 @@ use crate::shapes::{Bar, HangObject, OBJECTS, Random, SUPPORTERS, Support, meant
 use hangpose::geometry::{Point, Vector};
 use hangpose::mechanics::Kind;
 
-/// Largest extent of a mug with its handle, in distances between the tips of neighbouring pegs; larger mugs are made smaller.
+/// Largest extent of a mug with its handle, in distances between the tips of neighbouring pegs; larger mugs are made smaller. It
+/// hangs half as far to either side of its peg, so that neighbours have room.
 const ROOM: f32 = 0.8;
 
 /// A tree, and a mug that fits for each of its pegs.
