@@ -6,7 +6,7 @@
 
 #include "shapes.h"
 
-enum { SAMPLES = 4000, VOXELS = 100000, POSES = 3 };
+enum { SAMPLES = 4000, VOXELS = 100000, POSES = 3, NODES = 64, WAYPOINTS = 100 };
 static float vertices[RING_VERTICES][3], points[PEG_POINTS][3], normals[PEG_POINTS][3];
 static uint32_t triangles[RING_TRIANGLES][3];
 static unsigned char object_memory[HANGPOSE_OBJECT_BYTES(RING_VERTICES, RING_TRIANGLES, SAMPLES, VOXELS)];
@@ -154,6 +154,22 @@ int main(void) {
   hangpose_monitor_cancel(&monitor);
   pthread_join(thread, NULL);
   expect(HANGPOSE_OK, predict(peg, work, POSES, NULL), "a valid prediction");
+
+  static unsigned char plan_memory[HANGPOSE_PLAN_BYTES(PEG_POINTS, 0, NODES, WAYPOINTS)];
+  static hangpose_waypoint waypoints[WAYPOINTS];
+  hangpose_pose goal = {.struct_size = sizeof goal,
+                        .has_pose = 1,
+                        .position = {0, 0.04f, -0.03f},
+                        .quaternion = {0, 0.7071f, 0, 0.7071f}};
+  hangpose_plan plan = {.struct_size = sizeof plan};
+  hangpose_motion motion;
+  hangpose_motion_init(&motion, sizeof motion, &detail);
+  motion.nodes = NODES;
+  expect(HANGPOSE_NO_PATH,
+         hangpose_plan_path(ring, peg, NULL, &params, &motion, &goal, plan_memory, sizeof plan_memory, NULL,
+                            waypoints, sizeof *waypoints, WAYPOINTS, &plan, &detail),
+         "a path to a pose in which the ring is in the peg");
+  printf("    %s\n", hangpose_plan_reason_string(plan.failure.reason));
 
   init(&changed, HANGPOSE_PROFILE_PAPER, HANGPOSE_ABI_VERSION);
   changed.samples = SAMPLES;

@@ -7,7 +7,8 @@
 // point cloud, once each. (3) hangpose_predict. poses[0] is the best: place the object at its `position` and
 // `quaternion` and release it. examples-c/01_static_memory.c is a complete program. A hangpose_request says how and
 // where the object shall hang and what it must not touch, and hangpose_predict_many hangs several objects at once:
-// examples-c/09_requests.cpp.
+// examples-c/09_requests.cpp. hangpose_plan_path finds a way to a pose without collisions, and
+// hangpose_predict_reachable the best pose that has one: examples-c/08_plan.cpp.
 //
 // From depth images. The mesh of an object that is held alone: hangpose_volume_room gives the crop box of a dense
 // volume; then hangpose_volume_create, hangpose_volume_integrate once for each image, hangpose_volume_complete and
@@ -57,14 +58,25 @@
 #define HANGPOSE_PREDICT_BYTES(points, poses)                                                        \
   (HANGPOSE_PREDICT_BYTES_AT_LEAST + HANGPOSE_PREDICT_BYTES_EACH_POINT * (size_t)(points) +         \
    HANGPOSE_PREDICT_BYTES_EACH_POSE * (size_t)(poses))
+#define HANGPOSE_PLAN_BYTES(points, scene_points, nodes, waypoints)                                  \
+  (HANGPOSE_PLAN_BYTES_AT_LEAST + HANGPOSE_PLAN_BYTES_EACH_POINT * (size_t)(points) +               \
+   HANGPOSE_PLAN_BYTES_EACH_SCENE_POINT * (size_t)(scene_points) +                                  \
+   HANGPOSE_PLAN_BYTES_EACH_NODE * (size_t)(nodes) +                                                \
+   HANGPOSE_PLAN_BYTES_EACH_WAYPOINT * (size_t)(waypoints))
+#define HANGPOSE_REACHABLE_BYTES(points, poses, scene_points, nodes, waypoints)                      \
+  (HANGPOSE_REACHABLE_BYTES_AT_LEAST + HANGPOSE_REACHABLE_BYTES_EACH_POINT * (size_t)(points) +     \
+   HANGPOSE_REACHABLE_BYTES_EACH_POSE * (size_t)(poses) +                                           \
+   HANGPOSE_REACHABLE_BYTES_EACH_SCENE_POINT * (size_t)(scene_points) +                             \
+   HANGPOSE_REACHABLE_BYTES_EACH_NODE * (size_t)(nodes) +                                           \
+   HANGPOSE_REACHABLE_BYTES_EACH_WAYPOINT * (size_t)(waypoints))
 #define HANGPOSE_VOLUME_BYTES(blocks)                                                                \
   (HANGPOSE_VOLUME_BYTES_AT_LEAST + HANGPOSE_VOLUME_BYTES_EACH_BLOCK * (size_t)(blocks))
 #define HANGPOSE_COMPLETE_BYTES(blocks)                                                              \
   (HANGPOSE_COMPLETE_BYTES_AT_LEAST + HANGPOSE_COMPLETE_BYTES_EACH_BLOCK * (size_t)(blocks))
 #define HANGPOSE_SURFACE_BYTES(blocks)                                                               \
   (HANGPOSE_SURFACE_BYTES_AT_LEAST + HANGPOSE_SURFACE_BYTES_EACH_BLOCK * (size_t)(blocks))
-// Terms of these macros: upper bounds of the growth of the queries per vertex, triangle, sample, voxel, point, pose and
-// block.
+// Terms of these macros: upper bounds of the growth of the queries per vertex, triangle, sample, voxel, point, pose,
+// scene point, node, waypoint and block.
 #define HANGPOSE_OBJECT_BYTES_AT_LEAST 31744
 #define HANGPOSE_OBJECT_BYTES_EACH_VERTEX 24
 #define HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE 180
@@ -75,6 +87,17 @@
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 46080
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 14
 #define HANGPOSE_PREDICT_BYTES_EACH_POSE 432
+#define HANGPOSE_PLAN_BYTES_AT_LEAST 2048
+#define HANGPOSE_PLAN_BYTES_EACH_POINT 16
+#define HANGPOSE_PLAN_BYTES_EACH_SCENE_POINT 76
+#define HANGPOSE_PLAN_BYTES_EACH_NODE 218
+#define HANGPOSE_PLAN_BYTES_EACH_WAYPOINT 32
+#define HANGPOSE_REACHABLE_BYTES_AT_LEAST 46080
+#define HANGPOSE_REACHABLE_BYTES_EACH_POINT 16
+#define HANGPOSE_REACHABLE_BYTES_EACH_POSE 488
+#define HANGPOSE_REACHABLE_BYTES_EACH_SCENE_POINT 76
+#define HANGPOSE_REACHABLE_BYTES_EACH_NODE 218
+#define HANGPOSE_REACHABLE_BYTES_EACH_WAYPOINT 32
 #define HANGPOSE_VOLUME_BYTES_AT_LEAST 2048
 #define HANGPOSE_VOLUME_BYTES_EACH_BLOCK 2072
 #define HANGPOSE_COMPLETE_BYTES_AT_LEAST 2048
@@ -84,7 +107,7 @@
 
 // Version of the structs and functions in this header. hangpose_params_init and hangpose_check_abi refuse a
 // program whose header has another version than the library.
-#define HANGPOSE_ABI_VERSION 2
+#define HANGPOSE_ABI_VERSION 3
 
 // Value of an index that does not apply.
 #define HANGPOSE_NO_INDEX 4294967295
@@ -114,6 +137,9 @@
 // Greatest number of contacts in a pose.
 #define HANGPOSE_MAX_CONTACTS 8
 
+// Greatest number of parts of a gripper, hangpose_motion.part_count.
+#define HANGPOSE_MAX_PARTS 64
+
 // An analysed object, at the front of the memory in which it was created. There is nothing to free. As long as it
 // is used, its memory must not be moved and nobody else may write to it. Any number of threads may use it at the
 // same time.
@@ -129,7 +155,7 @@ typedef struct hangpose_supporter hangpose_supporter;
 // it. A thread that changes it must be the only one that uses it.
 typedef struct hangpose_volume hangpose_volume;
 
-// Result of a call. 0: done. Above 0: a valid result that is not, or not only, poses. Below 0: an error of the
+// Result of a call. 0: done. Above 0: a valid result that is not, or not only, poses or a path. Below 0: an error of the
 // caller; the call did nothing, and hangpose_detail says what to correct.
 typedef int32_t hangpose_status;
 
@@ -317,8 +343,15 @@ typedef struct hangpose_limits {
   uint32_t voxels;
   // Number of points of the supporter's cloud.
   uint32_t points;
-  // Value of `pose_capacity` for hangpose_predict, or of `object_count` for hangpose_predict_many.
+  // Value of `pose_capacity` for hangpose_predict or hangpose_predict_reachable, or of `object_count` for
+  // hangpose_predict_many.
   uint32_t poses;
+  // Value of hangpose_request.scene_point_count, for planning.
+  uint32_t scene_points;
+  // Value of hangpose_motion.nodes.
+  uint32_t nodes;
+  // Value of `waypoint_capacity` for hangpose_plan_path or hangpose_predict_reachable.
+  uint32_t waypoints;
 } hangpose_limits;
 
 // Lets other threads read the progress of a call and cancel it, and limits the work of each call. It must not be
@@ -787,6 +820,169 @@ typedef struct hangpose_many {
   uint64_t distance_queries;
 } hangpose_many;
 
+// A part of a gripper: all points within `radius` of a segment; a ball if both ends are the same. In object coordinates.
+typedef struct hangpose_capsule {
+  // x, y, z of one end of the segment, metres, each within +-1,000,000.
+  float from[3];
+  // x, y, z of the other end, metres, each within +-1,000,000.
+  float to[3];
+  // Radius, metres; 0 to 10.
+  float radius;
+  // x, y, z of the displacement when the gripper opens, metres; zeros for parts that do not move, such as the palm.
+  float opening[3];
+} hangpose_capsule;
+
+// Returns 1 if the robot can bring the object to a pose, 0 if not, for hangpose_motion.accepts. `context` is
+// hangpose_motion.context. `position` is x, y, z of the origin of the object, metres, and `quaternion` x, y, z, w of the
+// unit quaternion that rotates object coordinates into supporter coordinates; both are valid until it returns. It must
+// not throw or jump out, and must always give the same answer for the same pose. It may cancel the monitor of the call. It
+// must not write to what the call reads, nor touch what the call writes.
+typedef int32_t (*hangpose_accepts)(void *context, const float *position, const float *quaternion);
+
+// How an object moves to the pose in which it hangs, or away from it. Set the struct with hangpose_motion_init, then
+// change single fields. The library keeps no pointer after the call.
+typedef struct hangpose_motion {
+  // sizeof(hangpose_motion), set by hangpose_motion_init.
+  uint32_t struct_size;
+  // 1 if the next two fields say where the object is grasped, or, to take it off, where it is brought; 0, the default,
+  // for any pose outside of the supporter's bounds.
+  uint32_t has_start;
+  // x, y, z of the origin of the object at the start, metres, in supporter coordinates, each within +-1,000,000.
+  float start_position[3];
+  // x, y, z, w of the quaternion that rotates object coordinates into supporter coordinates; any length but zero.
+  float start_quaternion[4];
+  // 1 if the object is taken off instead of hung: the path begins at the rest pose and leads to the start. Default: 0.
+  uint32_t take_off;
+  // Number of parts of the gripper; 0, the default, if none is to be planned, up to HANGPOSE_MAX_PARTS.
+  uint32_t part_count;
+  // x, y, z of the displacement with which the opened gripper leaves the object, in object coordinates, metres; up to 10
+  // metres long. If this straight way is blocked, another one is planned; zeros leave all of it to the planner.
+  float retreat[3];
+  // 1 if all of the object stays in the box of the next two fields; 0, the default, for no limit. The gripper may leave
+  // it.
+  uint32_t has_workspace;
+  // x, y, z of the lower corner of the box, metres, in supporter coordinates.
+  float workspace_low[3];
+  // x, y, z of the upper corner, metres, each above that of the lower one.
+  float workspace_high[3];
+  // Distance from obstacles that the path keeps where there is room for it, metres; above 0, at most 0.1. At the release
+  // pose, and where the way is narrow, it is less, but never a collision. Default: 0.005.
+  float clearance;
+  // Largest distance of the centres of mass at two waypoints one after the other, metres; above 0, at most 1.
+  // Default: 0.01.
+  float step_position;
+  // Largest rotation from one to the next, radians; above 0, at most pi. Default: 0.1.
+  float step_rotation;
+  // Largest speed of the centre of mass, m/s; above 0, at most 100. Default: 0.25.
+  float speed;
+  // Largest speed of rotation, rad/s; above 0, at most 100. Default: 1.
+  float angular_speed;
+  // Largest acceleration of the centre of mass, m/s^2; above 0, at most 1000. Default: 0.5.
+  float acceleration;
+  // Largest acceleration of rotation, rad/s^2; above 0, at most 1000. Default: 2.
+  float angular_acceleration;
+  // Number of poses that are sampled at most: the budget of the search; 1 to 10,000,000. Default: 2000.
+  uint32_t samples;
+  // Capacity of either of the two trees, 64 to 1,000,000; the memory depends on it. Default: 4096.
+  uint32_t nodes;
+  // Seed of the samples: the same seed gives the same path. Default: 1.
+  uint64_t seed;
+  // Array of part_count parts of the gripper as it holds the object. They may touch the object. May be null if
+  // part_count is 0.
+  const struct hangpose_capsule *parts;
+  // Decides which poses of the object the robot can reach, as its inverse kinematics does; null, the default, for all.
+  // It is asked as late and as seldom as possible: first about the goal and the start, then about the waypoints of paths
+  // without collisions. Called during the call only, by the thread that makes it.
+  hangpose_accepts accepts;
+  // What `accepts` is given; the library does not look at it.
+  void *context;
+} hangpose_motion;
+
+// Why there is no path, one of HANGPOSE_PLAN_*.
+typedef uint32_t hangpose_plan_reason;
+
+// A pose of a path at a time. Written by hangpose_plan_path and hangpose_predict_reachable.
+typedef struct hangpose_waypoint {
+  // sizeof(hangpose_waypoint), set by the library.
+  uint32_t struct_size;
+  // Time since the start, seconds.
+  float seconds;
+  // x, y, z of the origin of the object, metres, in supporter coordinates; or, after the gripper has let go, of the
+  // object coordinates in which the gripper is given.
+  float position[3];
+  // x, y, z, w of the unit quaternion that rotates object coordinates into supporter coordinates.
+  float quaternion[4];
+} hangpose_waypoint;
+
+// What moves into a collision, one of HANGPOSE_MOVER_*.
+typedef uint32_t hangpose_mover;
+
+// What stands in the way, one of HANGPOSE_OBSTACLE_*.
+typedef uint32_t hangpose_obstacle;
+
+// Why there is no path to a pose. Part of hangpose_plan, and written by hangpose_predict_reachable for each pose.
+typedef struct hangpose_plan_failure {
+  // sizeof(hangpose_plan_failure), set by the library.
+  uint32_t struct_size;
+  // One of HANGPOSE_PLAN_*; hangpose_plan_reason_string gives a text.
+  hangpose_plan_reason reason;
+  // HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT with HANGPOSE_PLAN_STOPPED, else HANGPOSE_OK.
+  hangpose_status stopped;
+  // With HANGPOSE_PLAN_BUDGET_USED_UP the number of samples, with HANGPOSE_PLAN_TREES_FULL that of the nodes of a full
+  // tree; else 0.
+  uint32_t count;
+  // With HANGPOSE_PLAN_ENCLOSED the width of the gaps that are taken as closed, metres; else NaN.
+  float resolution;
+  // With a collision what moves, one of HANGPOSE_MOVER_*; else HANGPOSE_MOVER_NONE.
+  hangpose_mover mover;
+  // Index in hangpose_motion.parts, or HANGPOSE_NO_INDEX.
+  uint32_t part;
+  // With a collision what stands in the way, one of HANGPOSE_OBSTACLE_*; else HANGPOSE_OBSTACLE_NONE.
+  hangpose_obstacle obstacle;
+  // Index in hangpose_request.scene_points or hangpose_request.hung, or HANGPOSE_NO_INDEX.
+  uint32_t obstacle_index;
+  // With a collision x, y, z of its place, metres, in supporter coordinates; else NaN.
+  float position[3];
+  // With a collision the distance of the two, metres: negative in penetration, or less than the clearance; else NaN.
+  float distance;
+} hangpose_plan_failure;
+
+// Result of hangpose_plan_path and hangpose_predict_reachable beside the waypoints.
+typedef struct hangpose_plan {
+  // sizeof(hangpose_plan), set by the caller.
+  uint32_t struct_size;
+  // 1 if there is a path. Else 0, and the fields from waypoint_count to clearance are 0 or NaN.
+  uint32_t has_path;
+  // With hangpose_predict_reachable the index of the pose for which the path was planned, HANGPOSE_NO_INDEX if there is
+  // no pose; else 0.
+  uint32_t pose_index;
+  // Number of waypoints of the object, at the front of the array: from the start to the release pose, and on to the rest
+  // pose; with hangpose_motion.take_off the other way.
+  uint32_t waypoint_count;
+  // Index of the release pose. The waypoints between it and the rest pose lower the object into contact.
+  uint32_t release;
+  // Number of waypoints of the opened gripper, after those of the object: away from it once it rests; with
+  // hangpose_motion.take_off towards it, before it moves. 0 without a gripper.
+  uint32_t gripper_waypoint_count;
+  // Least distance of the object, or of the gripper that holds it, from everything else between start and release pose,
+  // metres: a lower bound, at most 0.05.
+  float clearance;
+  // Why there is no path; its `reason` is HANGPOSE_PLAN_FOUND if there is one.
+  struct hangpose_plan_failure failure;
+  // Number of poses sampled.
+  uint32_t samples;
+  // Number of nodes of the trees.
+  uint32_t nodes;
+  // Number of poses tested for collision.
+  uint32_t tested;
+  // Number of poses that hangpose_motion.accepts was asked about.
+  uint32_t asked;
+  // Number of rays cast.
+  uint64_t rays;
+  // Number of distance and inside-outside queries.
+  uint64_t distance_queries;
+} hangpose_plan;
+
 // Resolution and extent of a volume, and how far its completion may go. Set the struct with
 // hangpose_volume_settings_init, then change single fields.
 typedef struct hangpose_volume_settings {
@@ -894,6 +1090,9 @@ typedef struct hangpose_points_settings {
 // The work limit of the monitor was reached, in this call or in the analysis of one of its models. The results
 // found so far are returned. hangpose_volume_integrate has none, and leaves the volume as it was.
 #define HANGPOSE_WORK_LIMIT 3
+
+// No path was found to the pose, or to any of the poses; hangpose_plan.failure says why.
+#define HANGPOSE_NO_PATH 4
 
 // A required pointer is null.
 #define HANGPOSE_ERROR_NULL (-1)
@@ -1048,6 +1247,69 @@ typedef struct hangpose_points_settings {
 // What is within hangpose_region.radius of triangles of a mesh.
 #define HANGPOSE_REGION_TRIANGLES 3
 
+// There is a path.
+#define HANGPOSE_PLAN_FOUND 0
+
+// No path was planned, because there is no pose, or because a better pose has a path.
+#define HANGPOSE_PLAN_NOT_TRIED 1
+
+// The release pose is in collision: hangpose_plan_failure.mover and the fields after it say where.
+#define HANGPOSE_PLAN_GOAL_IN_COLLISION 2
+
+// The given start is in collision.
+#define HANGPOSE_PLAN_START_IN_COLLISION 3
+
+// The release pose or the rest pose is outside of the workspace, or hangpose_motion.accepts refused it.
+#define HANGPOSE_PLAN_GOAL_OUTSIDE_WORKSPACE 4
+
+// The given start is outside of the workspace, or hangpose_motion.accepts refused it; or no start was given and none was
+// found.
+#define HANGPOSE_PLAN_START_OUTSIDE_WORKSPACE 5
+
+// There is no path, whatever the budget: the object and the supporter are linked like two rings of a chain, or the object
+// is in a cage. Gaps between points of the supporter that are narrower than hangpose_plan_failure.resolution are taken as
+// closed.
+#define HANGPOSE_PLAN_ENCLOSED 6
+
+// No path was found within hangpose_motion.samples.
+#define HANGPOSE_PLAN_BUDGET_USED_UP 7
+
+// No path was found before the trees were full: hangpose_motion.nodes.
+#define HANGPOSE_PLAN_TREES_FULL 8
+
+// The object has a path, but when the gripper opens it collides.
+#define HANGPOSE_PLAN_GRIPPER_CANNOT_OPEN 9
+
+// The object has a path, but the opened gripper has no way out.
+#define HANGPOSE_PLAN_GRIPPER_CANNOT_LEAVE 10
+
+// The monitor stopped the search: hangpose_plan_failure.stopped.
+#define HANGPOSE_PLAN_STOPPED 11
+
+// Nothing: there is no collision.
+#define HANGPOSE_MOVER_NONE 0
+
+// The object.
+#define HANGPOSE_MOVER_OBJECT 1
+
+// A part of the gripper.
+#define HANGPOSE_MOVER_GRIPPER 2
+
+// Nothing: there is no collision.
+#define HANGPOSE_OBSTACLE_NONE 0
+
+// The supporter.
+#define HANGPOSE_OBSTACLE_SUPPORTER 1
+
+// A point of hangpose_request.scene_points.
+#define HANGPOSE_OBSTACLE_SCENE 2
+
+// An object of hangpose_request.hung.
+#define HANGPOSE_OBSTACLE_HUNG 3
+
+// The object that has been hung.
+#define HANGPOSE_OBSTACLE_OBJECT 4
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -1076,9 +1338,9 @@ hangpose_status hangpose_params_init(struct hangpose_params *params,
                                      uint32_t abi_version,
                                      struct hangpose_detail *detail);
 
-// Sets `limits` to what `params`, `mesh` and `cloud` need, with `poses` 1. `mesh` or `cloud` may be null and then
-// counts as empty. Only the counts are read, not the arrays. Set limits->struct_size before the call. Returns
-// HANGPOSE_OK, or an error.
+// Sets `limits` to what `params`, `mesh` and `cloud` need, with `poses` 1, `nodes` that of hangpose_motion_init, and no
+// scene points and waypoints. `mesh` or `cloud` may be null and then counts as empty. Only the counts are read, not the
+// arrays. Set limits->struct_size before the call. Returns HANGPOSE_OK, or an error.
 hangpose_status hangpose_limits_of(const struct hangpose_params *params,
                                    const struct hangpose_mesh *mesh,
                                    const struct hangpose_cloud *cloud,
@@ -1099,6 +1361,16 @@ size_t hangpose_supporter_bytes(const struct hangpose_limits *limits);
 // within `limits`; depends on points and poses. Returns 0 if `limits` is null or its struct_size is wrong. For limits
 // beyond any memory the result is larger than any memory; it does not wrap around.
 size_t hangpose_predict_bytes(const struct hangpose_limits *limits);
+
+// Returns the bytes of working memory for hangpose_plan_path with any object and supporter within `limits`; depends on
+// points, scene_points, nodes and waypoints. Returns 0 if `limits` is null or its struct_size is wrong. For limits beyond
+// any memory the result is larger than any memory; it does not wrap around.
+size_t hangpose_plan_bytes(const struct hangpose_limits *limits);
+
+// Returns the bytes of working memory for hangpose_predict_reachable with any object and supporter within `limits`;
+// depends on points, poses, scene_points, nodes and waypoints. Returns 0 if `limits` is null or its struct_size is wrong.
+// For limits beyond any memory the result is larger than any memory; it does not wrap around.
+size_t hangpose_reachable_bytes(const struct hangpose_limits *limits);
 
 // Initialises a monitor, or resets a used one for the next call: not cancelled, no progress. No call may be using
 // it. `struct_size` is sizeof(hangpose_monitor). Returns HANGPOSE_OK, or an error.
@@ -1270,6 +1542,77 @@ hangpose_status hangpose_predict_many(const struct hangpose_object *const *objec
                                       size_t pose_size,
                                       struct hangpose_many *many,
                                       struct hangpose_detail *detail);
+
+// Sets `motion` to the defaults: from anywhere outside of the supporter's bounds, without a gripper and a workspace.
+// `struct_size` is sizeof(hangpose_motion). Returns HANGPOSE_OK, or an error.
+hangpose_status hangpose_motion_init(struct hangpose_motion *motion,
+                                     size_t struct_size,
+                                     struct hangpose_detail *detail);
+
+// Returns the meaning of a reason in English; a static string, never null.
+const char *hangpose_plan_reason_string(hangpose_plan_reason reason);
+
+// Plans a path of `object` to the pose `goal` on `supporter`, and of the gripper away from it; or, with
+// hangpose_motion.take_off, the other way. Both models must have been analysed with these `params`, the object with
+// hangpose_params.voxels.
+//
+// `goal` is a pose of hangpose_predict or one of the caller's, of which struct_size, has_pose = 1, position, quaternion and
+// has_rest are read, and with has_rest = 1 rest_position and rest_quaternion. Of `request` the scene and the
+// objects that hang already are obstacles; it may be null. `motion` may be null: from anywhere, without a gripper.
+//
+// `memory` is working memory of at least hangpose_plan_bytes, needed during the call only. `monitor` may be null.
+// `waypoints` is an array of `waypoint_capacity` structs, and `waypoint_size` is sizeof(hangpose_waypoint). Set
+// plan->struct_size before the call. Everything else is as for hangpose_predict.
+//
+// Returns HANGPOSE_OK with a path; HANGPOSE_NO_PATH without one, and plan->failure gives the reason; HANGPOSE_CANCELLED or
+// HANGPOSE_WORK_LIMIT if the monitor stopped the search; HANGPOSE_ERROR_CAPACITY if the path has more waypoints than there
+// is room for; or another error.
+hangpose_status hangpose_plan_path(const struct hangpose_object *object,
+                                   const struct hangpose_supporter *supporter,
+                                   const struct hangpose_request *request,
+                                   const struct hangpose_params *params,
+                                   const struct hangpose_motion *motion,
+                                   const struct hangpose_pose *goal,
+                                   void *memory,
+                                   size_t memory_size,
+                                   struct hangpose_monitor *monitor,
+                                   struct hangpose_waypoint *waypoints,
+                                   size_t waypoint_size,
+                                   uint32_t waypoint_capacity,
+                                   struct hangpose_plan *plan,
+                                   struct hangpose_detail *detail);
+
+// Does what hangpose_predict does, then plans a path to one pose after another, best first, until one has a path, as
+// hangpose_plan_path does. The models must have been analysed with hangpose_params.voxels.
+//
+// `failures` is an array of `pose_capacity` structs, or null: for each of `poses` whether it has a path, and if not, why.
+// `failure_size` is sizeof(hangpose_plan_failure). `plan` and `waypoints` are those of the last pose for which a path was
+// planned, whose index is plan->pose_index. `memory` is working memory of at least hangpose_reachable_bytes. Set
+// prediction->struct_size and plan->struct_size before the call. A work limit of `monitor` holds for the prediction and
+// for each of the plans.
+//
+// Returns HANGPOSE_OK with a path; HANGPOSE_NO_PATH with poses none of which has one; HANGPOSE_REJECTED without poses;
+// HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT with what was found so far, possibly with a path; HANGPOSE_ERROR_CAPACITY if
+// the path has more waypoints than there is room for; or another error.
+hangpose_status hangpose_predict_reachable(const struct hangpose_object *object,
+                                           const struct hangpose_supporter *supporter,
+                                           const struct hangpose_request *request,
+                                           const struct hangpose_params *params,
+                                           const struct hangpose_motion *motion,
+                                           void *memory,
+                                           size_t memory_size,
+                                           struct hangpose_monitor *monitor,
+                                           struct hangpose_pose *poses,
+                                           size_t pose_size,
+                                           uint32_t pose_capacity,
+                                           struct hangpose_plan_failure *failures,
+                                           size_t failure_size,
+                                           struct hangpose_waypoint *waypoints,
+                                           size_t waypoint_size,
+                                           uint32_t waypoint_capacity,
+                                           struct hangpose_prediction *prediction,
+                                           struct hangpose_plan *plan,
+                                           struct hangpose_detail *detail);
 
 // Returns the bytes of working memory that hangpose_mesh_sample needs for `count` samples.
 size_t hangpose_sample_bytes(uint32_t count);

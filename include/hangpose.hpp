@@ -13,6 +13,10 @@
 // hangpose::request says how and where the object shall hang and what it must not touch.
 // hangpose::predict_many hangs several objects at once. examples-c/09_requests.cpp is a complete program.
 //
+// hangpose::plan_path finds a way to a pose without collisions, and hangpose::predict_reachable the best pose
+// that has one; hangpose::motion says from where, with which gripper, and what the arm can reach.
+// examples-c/08_plan.cpp is a complete program.
+//
 // From depth images: hangpose::volume gives the mesh of an object, hangpose::depth_points the cloud of a
 // supporter. examples-c/07_depth_images.cpp is a complete program.
 #ifndef HANGPOSE_HPP
@@ -21,6 +25,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <type_traits>
 #include <utility>
 
 #include "hangpose.h"
@@ -31,11 +36,16 @@ namespace hangpose {
 // A row of an array: x, y, z of a point or direction, or three vertex indices.
 using vec3 = std::array<float, 3>;
 using triangle = std::array<std::uint32_t, 3>;
+// x, y, z, w of a rotation.
+using quaternion = std::array<float, 4>;
 // Lower and upper corner of a box, metres.
 using box = std::array<vec3, 2>;
 
 using camera = hangpose_camera;
 using pose = hangpose_pose;
+using capsule = hangpose_capsule;
+using waypoint = hangpose_waypoint;
+using plan_failure = hangpose_plan_failure;
 using limits = hangpose_limits;
 using object_info = hangpose_object_info;
 using object_site = hangpose_object_site;
@@ -494,8 +504,9 @@ inline result<many> predict_many(view<const object *const> objects, const suppor
                                  const request &asked, const params &params, view<pose> poses,
                                  const memory &work, monitor *watch = nullptr) noexcept {
   if (poses.size() != objects.size()) {
-    return error::of(HANGPOSE_ERROR_COUNT, "poses",
-                     "the number of poses differs from the number of objects: pass arrays of the same length");
+    return error::of(
+        HANGPOSE_ERROR_COUNT, "poses",
+        "the number of poses differs from the number of objects: pass arrays of the same length");
   }
   const hangpose_object *handles[HANGPOSE_MAX_HUNG] = {};
   for (std::size_t i = 0; i < objects.size() && i < HANGPOSE_MAX_HUNG; ++i) {
@@ -517,6 +528,172 @@ inline result<many> predict_many(view<const object *const> objects, const suppor
   const auto work = internal::work_for(supporter, params, poses.size());
   if (!work) return work.error();
   return predict_many(objects, supporter, asked, params, poses, *work, watch);
+}
+
+// A gripper as capsules that are fixed to the object while it is held, in object coordinates. The capsules
+// are the caller's and must outlive it.
+struct gripper {
+  view<const capsule> parts;
+  // Displacement with which the opened gripper leaves the object, metres; zeros leave it to the planner.
+  vec3 retreat{};
+};
+
+// How the object moves to the pose in which it hangs, or away from it: the fields of hangpose_motion, set to
+// the defaults. What it points to is the caller's and must outlive it.
+struct motion : hangpose_motion {
+  motion() noexcept : hangpose_motion() { hangpose_motion_init(this, sizeof(hangpose_motion), nullptr); }
+  // Sets where the object is grasped, or, to take it off, where it is brought: position, metres, and rotation
+  // from object to supporter coordinates.
+  motion &start_at(const vec3 &at, const quaternion &turned) noexcept {
+    has_start = 1;
+    for (std::size_t i = 0; i < 3; ++i) start_position[i] = at[i];
+    for (std::size_t i = 0; i < 4; ++i) start_quaternion[i] = turned[i];
+    return *this;
+  }
+  // Plans for the hand that holds the object, too.
+  motion &hold_with(const gripper &hand) noexcept {
+    part_count = internal::count(hand.parts.size());
+    parts = hand.parts.data();
+    for (std::size_t i = 0; i < 3; ++i) retreat[i] = hand.retreat[i];
+    return *this;
+  }
+  // Keeps all of the object in a box: its lower and its upper corner, metres, in supporter coordinates.
+  motion &stay_within(const box &corners) noexcept {
+    has_workspace = 1;
+    for (std::size_t i = 0; i < 3; ++i) workspace_low[i] = corners[0][i], workspace_high[i] = corners[1][i];
+    return *this;
+  }
+  // Asks `decide(const vec3 &position, const quaternion &rotation)`, the caller's inverse kinematics, whether
+  // the robot can bring the object to a pose. `decide` is called as hangpose_accepts says, is not copied, and
+  // must outlive the motion. An exception of it ends the program.
+  template <class Decide>
+  motion &accept_if(Decide &decide) noexcept {
+    static_assert(std::is_invocable_r_v<bool, Decide &, const vec3 &, const quaternion &>,
+                  "the callback takes a position and a rotation and returns a bool");
+    context = const_cast<void *>(static_cast<const void *>(std::addressof(decide)));
+    accepts = [](void *of, const float *p, const float *q) noexcept -> std::int32_t {
+      const bool is_accepted =
+          (*static_cast<Decide *>(of))(vec3{p[0], p[1], p[2]}, quaternion{q[0], q[1], q[2], q[3]});
+      return is_accepted ? 1 : 0;
+    };
+    return *this;
+  }
+};
+
+// Result of plan_path: the path, or the reason why there is none.
+class plan : public hangpose_plan {
+ public:
+  plan() noexcept : hangpose_plan() { struct_size = sizeof(hangpose_plan); }
+  // HANGPOSE_OK, HANGPOSE_NO_PATH, HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT.
+  hangpose_status status = HANGPOSE_OK;
+  // The waypoints of the object, then those of the opened gripper, in the caller's array.
+  view<const waypoint> object, gripper;
+  // A text for people: why there is no path.
+  const char *reason() const noexcept { return hangpose_plan_reason_string(failure.reason); }
+
+  // Sets the views on the front of the caller's array.
+  void view_on(view<const waypoint> all) noexcept {
+    object = view<const waypoint>(all.data(), waypoint_count);
+    gripper = view<const waypoint>(all.data() + waypoint_count, gripper_waypoint_count);
+  }
+};
+
+namespace internal {
+
+// Working memory from the heap for planning, of as many bytes as `query` says.
+inline result<memory> work_for_plan(const supporter &supporter, const request &asked, const params &params,
+                                    const motion &moved, std::size_t poses, std::size_t waypoints,
+                                    std::size_t (*query)(const hangpose_limits *)) noexcept {
+  auto within = limits_of(params, nullptr, nullptr);
+  if (!within) return within.error();
+  const auto info = supporter.info();
+  if (!info) return info.error();
+  within->points = info->points;
+  within->poses = count(poses);
+  within->scene_points = asked.scene_point_count;
+  within->nodes = moved.nodes;
+  within->waypoints = count(waypoints);
+  memory work = memory::own(query(&*within));
+  if (work.data() == nullptr) return no_memory();
+  return work;
+}
+
+}  // namespace internal
+
+// Plans a path of the object to `goal` and writes it to `waypoints`. The scene and the objects that hang
+// already of `asked` are obstacles. `work` is working memory of at least hangpose_plan_bytes or
+// HANGPOSE_PLAN_BYTES. The error HANGPOSE_ERROR_CAPACITY says how many waypoints are needed.
+inline result<plan> plan_path(const object &object, const supporter &supporter, const request &asked,
+                              const params &params, const motion &moved, const pose &goal,
+                              view<waypoint> waypoints, const memory &work,
+                              monitor *watch = nullptr) noexcept {
+  plan found;
+  error why;
+  found.status = hangpose_plan_path(object.get(), supporter.get(), &asked, &params, &moved, &goal,
+                                    work.data(), work.size(), internal::get(watch), waypoints.data(),
+                                    sizeof(waypoint), internal::count(waypoints.size()), &found, why.out());
+  if (found.status < 0) return why;
+  found.view_on({waypoints.data(), waypoints.size()});
+  return found;
+}
+
+// The same with working memory from the heap.
+inline result<plan> plan_path(const object &object, const supporter &supporter, const request &asked,
+                              const params &params, const motion &moved, const pose &goal,
+                              view<waypoint> waypoints, monitor *watch = nullptr) noexcept {
+  const auto work =
+      internal::work_for_plan(supporter, asked, params, moved, 0, waypoints.size(), &hangpose_plan_bytes);
+  if (!work) return work.error();
+  return plan_path(object, supporter, asked, params, moved, goal, waypoints, *work, watch);
+}
+
+// Result of predict_reachable.
+struct reachable {
+  // HANGPOSE_OK with a path, HANGPOSE_NO_PATH with poses none of which has one, HANGPOSE_REJECTED without
+  // poses, HANGPOSE_CANCELLED or HANGPOSE_WORK_LIMIT.
+  hangpose_status status = HANGPOSE_OK;
+  // All poses, best first, or the reason why there are none.
+  hangpose::prediction prediction;
+  // The plan of the last pose for which a path was planned, poses[plan.pose_index].
+  hangpose::plan plan;
+};
+
+// Does what predict does, then plans a path to one pose after another until one has a path. `failures` has
+// one element for each of `poses`, or none: why the poses without a path have none. `work` is working memory
+// of at least hangpose_reachable_bytes or HANGPOSE_REACHABLE_BYTES.
+inline result<reachable> predict_reachable(const object &object, const supporter &supporter,
+                                           const request &asked, const params &params, const motion &moved,
+                                           view<pose> poses, view<plan_failure> failures,
+                                           view<waypoint> waypoints, const memory &work,
+                                           monitor *watch = nullptr) noexcept {
+  if (!failures.empty() && failures.size() != poses.size()) {
+    return error::of(HANGPOSE_ERROR_COUNT, "failures",
+                     "the number of failures differs from the number of poses: pass arrays of the same "
+                     "length, or no failures");
+  }
+  reachable found;
+  error why;
+  found.status = hangpose_predict_reachable(
+      object.get(), supporter.get(), &asked, &params, &moved, work.data(), work.size(), internal::get(watch),
+      poses.data(), sizeof(pose), internal::count(poses.size()), failures.empty() ? nullptr : failures.data(),
+      sizeof(plan_failure), waypoints.data(), sizeof(waypoint), internal::count(waypoints.size()),
+      &found.prediction, &found.plan, why.out());
+  if (found.status < 0) return why;
+  found.prediction.status = found.plan.status = found.status;
+  found.prediction.poses = view<pose>(poses.data(), found.prediction.pose_count);
+  found.plan.view_on({waypoints.data(), waypoints.size()});
+  return found;
+}
+
+// The same with working memory from the heap.
+inline result<reachable> predict_reachable(const object &object, const supporter &supporter,
+                                           const request &asked, const params &params, const motion &moved,
+                                           view<pose> poses, view<plan_failure> failures,
+                                           view<waypoint> waypoints, monitor *watch = nullptr) noexcept {
+  const auto work = internal::work_for_plan(supporter, asked, params, moved, poses.size(), waypoints.size(),
+                                            &hangpose_reachable_bytes);
+  if (!work) return work.error();
+  return predict_reachable(object, supporter, asked, params, moved, poses, failures, waypoints, *work, watch);
 }
 
 // Fills `points` and `normals`, arrays of the same length, with evenly spread samples of a mesh: the cloud of
@@ -552,7 +729,7 @@ struct depth_image : hangpose_depth_image {
   }
   // Sets the pose of the camera in world coordinates: its position, metres, and the quaternion x, y, z, w
   // that rotates camera coordinates into world coordinates. Without this call they are the same.
-  depth_image &seen_from(const vec3 &at, const std::array<float, 4> &turned) noexcept {
+  depth_image &seen_from(const vec3 &at, const hangpose::quaternion &turned) noexcept {
     for (std::size_t i = 0; i < 3; ++i) position[i] = at[i];
     for (std::size_t i = 0; i < 4; ++i) quaternion[i] = turned[i];
     return *this;
@@ -745,22 +922,27 @@ class depth_points {
 
 namespace internal {
 
-inline Eigen::Isometry3f motion(const float (&position)[3], const float (&quaternion)[4]) {
-  Eigen::Isometry3f motion = Eigen::Isometry3f::Identity();
-  motion.linear() = Eigen::Quaternionf(Eigen::Map<const Eigen::Vector4f>(quaternion)).toRotationMatrix();
-  motion.translation() = Eigen::Map<const Eigen::Vector3f>(position);
-  return motion;
+inline Eigen::Isometry3f isometry(const float (&position)[3], const float (&quaternion)[4]) {
+  Eigen::Isometry3f made = Eigen::Isometry3f::Identity();
+  made.linear() = Eigen::Quaternionf(Eigen::Map<const Eigen::Vector4f>(quaternion)).toRotationMatrix();
+  made.translation() = Eigen::Map<const Eigen::Vector3f>(position);
+  return made;
 }
 
 }  // namespace internal
 
 // The release pose: maps object coordinates to supporter coordinates.
 inline Eigen::Isometry3f to_eigen(const pose &hanging) {
-  return internal::motion(hanging.position, hanging.quaternion);
+  return internal::isometry(hanging.position, hanging.quaternion);
 }
 // The rest pose; NaN if hangpose_pose.has_rest is 0.
 inline Eigen::Isometry3f rest_to_eigen(const pose &hanging) {
-  return internal::motion(hanging.rest_position, hanging.rest_quaternion);
+  return internal::isometry(hanging.rest_position, hanging.rest_quaternion);
+}
+
+// The pose of a waypoint.
+inline Eigen::Isometry3f to_eigen(const waypoint &at) {
+  return internal::isometry(at.position, at.quaternion);
 }
 
 // A view of the points, normals or triangles in the columns of a matrix, which must outlive the view.

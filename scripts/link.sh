@@ -37,7 +37,7 @@ say "libhangpose.a has no allocator, no unwinding, no mutable state, and no glob
 
 # ---- the examples, through CMake
 examples=(01_static_memory "02_mesh_file samples/mug.obj samples/hook.obj" 03_two_threads 04_control_loop 05_eigen 06_every_error
-    07_depth_images "09_requests samples/mug.obj samples/mug_tree.obj")
+    07_depth_images "08_plan samples/mug.obj samples/hook.obj" "09_requests samples/mug.obj samples/mug_tree.obj")
 run_examples() {
     local example
     for example in "${examples[@]}"; do quiet "$1"/$example; done

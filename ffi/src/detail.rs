@@ -88,6 +88,7 @@ mod tests {
     use hangpose_core::ParamsError;
     use hangpose_core::geometry::{CloudError, MeshError};
     use hangpose_core::hanging::{RegionError, RequestError};
+    use hangpose_core::motion::MotionError;
     use std::string::ToString;
 
     #[test]
@@ -129,6 +130,20 @@ mod tests {
             request(RequestError::Scene { point: most, position: worst }),
             request(RequestError::Distinct),
             request(RequestError::Symmetry { index: most }),
+            Failure::Motion(MotionError::Start),
+            Failure::Motion(MotionError::Part { part: most }),
+            Failure::Motion(MotionError::Retreat),
+            Failure::Motion(MotionError::Workspace),
+            Failure::Motion(MotionError::Value {
+                name: "speed.angular_acceleration",
+                value: worst[0],
+                max: worst[0],
+            }),
+            Failure::Motion(MotionError::Count { name: "samples", value: most, min: most, max: most }),
+            Failure::Pose { spot: Place::of("goal.rest_quaternion").into() },
+            Failure::NoGoal { value: u32::MAX },
+            Failure::HungWithoutField { index: most },
+            Failure::Waypoints { needed: most, given: most },
         ] {
             let text = failure.to_string();
             assert!(text.len() < HANGPOSE_MESSAGE_CHARS, "{} bytes: {text}", text.len());

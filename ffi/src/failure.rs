@@ -2,12 +2,14 @@
 //!
 //! [`hangpose_detail`]: crate::hangpose_detail
 
+use crate::motion::motion_place;
 use crate::status::*;
 use core::fmt::{Display, Formatter};
 use hangpose_core::ParamsError;
 use hangpose_core::geometry::{CloudError, MAX_COORDINATE, MAX_COUNT, MeshError};
 use hangpose_core::hanging::{AnalysisError, PredictError, RegionError, RequestError};
 use hangpose_core::memory::OutOfMemory;
+use hangpose_core::motion::{MotionError, PlanError};
 use hangpose_core::perception::sampling::SamplingError;
 
 /// Reason why a call did nothing.
@@ -34,6 +36,11 @@ pub(crate) enum Failure {
     ManyHung { count: u32 },
     Listed { index: usize, fault: ObjectFault },
     NotSettled,
+    Motion(MotionError),
+    Pose { spot: Spot },
+    NoGoal { value: u32 },
+    HungWithoutField { index: usize },
+    Waypoints { needed: usize, given: usize },
     Cancelled,
 }
 
@@ -123,6 +130,9 @@ impl Reason for Failure {
             } => HANGPOSE_ERROR_INDEX,
             Self::Choice { .. }
             | Self::NotSettled
+            | Self::Motion(_)
+            | Self::Pose { .. }
+            | Self::NoGoal { .. }
             | Self::Params(_)
             | Self::Request { .. }
             | Self::Hung { fault: HungFault::Position(_) | HungFault::Quaternion(_), .. }
@@ -135,7 +145,8 @@ impl Reason for Failure {
             ) => HANGPOSE_ERROR_VALUE,
             Self::Index { .. } | Self::Mesh(MeshError::Index { .. }) => HANGPOSE_ERROR_INDEX,
             Self::Mesh(MeshError::AllDegenerate { .. }) => HANGPOSE_ERROR_DEGENERATE,
-            Self::NoDistanceField => HANGPOSE_ERROR_NO_DISTANCE_FIELD,
+            Self::NoDistanceField | Self::HungWithoutField { .. } => HANGPOSE_ERROR_NO_DISTANCE_FIELD,
+            Self::Waypoints { .. } => HANGPOSE_ERROR_CAPACITY,
             Self::Cancelled => HANGPOSE_CANCELLED,
         }
     }
@@ -172,7 +183,15 @@ impl Reason for Failure {
             Self::Cloud(error) => cloud_place(error),
             Self::Params(error) => params_place(error),
             Self::NoDistanceField => Place::of("object"),
-            Self::Request { spot, .. } => spot.into(),
+            Self::Request { spot, .. } | Self::Pose { spot } => spot.into(),
+            Self::Motion(error) => motion_place(error),
+            Self::NoGoal { value } => Place::of("goal.has_pose").value(f64::from(value)).range([1.0; 2]),
+            Self::HungWithoutField { index } => {
+                Place { index: Some(index), ..Place::of("request.hung.object") }
+            }
+            Self::Waypoints { needed, given } => {
+                Place::of("waypoint_capacity").value(given as f64).range([needed as f64, f64::INFINITY])
+            }
             Self::Hung { index, fault } => hung_place(index, fault),
             Self::ManyHung { count } => {
                 let range = [0.0, crate::HANGPOSE_MAX_HUNG as f64];
@@ -355,6 +374,19 @@ impl Display for Failure {
             Self::NotSettled => f.write_str(
                 "params.settle is 0, and without a release nothing keeps the objects apart: analyse the models with settle = 1, and pass those params",
             ),
+            Self::Motion(error) => error.fmt(f),
+            Self::Pose { spot } => write!(
+                f,
+                "{} is no part of a pose: pass metres within ±{MAX_COORDINATE} and the quaternion x, y, z, w of a rotation, which are numbers",
+                spot.field
+            ),
+            Self::NoGoal { .. } => {
+                f.write_str("the goal has no pose: pass one with has_pose = 1, a position and a quaternion")
+            }
+            Self::HungWithoutField { index } => PlanError::NoDistanceField { hung: Some(*index) }.fmt(f),
+            Self::Waypoints { needed, given } => {
+                PlanError::TooManyWaypoints { needed: *needed, given: *given }.fmt(f)
+            }
             Self::Cancelled => f.write_str("cancelled"),
         }
     }
@@ -421,6 +453,27 @@ impl From<PredictError> for Failure {
             PredictError::NoDistanceField => Self::NoDistanceField,
             // A request of a caller was checked before.
             PredictError::Request(error) => Self::Request { error, spot: Place::of("request").into() },
+        }
+    }
+}
+
+impl From<MotionError> for Failure {
+    fn from(error: MotionError) -> Self {
+        Self::Motion(error)
+    }
+}
+
+impl From<PlanError> for Failure {
+    fn from(error: PlanError) -> Self {
+        match error {
+            PlanError::Params(error) => error.into(),
+            PlanError::OutOfMemory(error) => error.into(),
+            PlanError::NoDistanceField { hung: None } => Self::NoDistanceField,
+            PlanError::NoDistanceField { hung: Some(index) } => Self::HungWithoutField { index },
+            PlanError::TooManyWaypoints { needed, given } => Self::Waypoints { needed, given },
+            // The request of a caller was checked before.
+            PlanError::Request(error) => Self::Request { error, spot: Place::of("request").into() },
+            PlanError::Motion(error) => error.into(),
         }
     }
 }

@@ -18,26 +18,33 @@ mod depth_points;
 mod detail;
 mod failure;
 mod getter;
+mod goal;
 mod handle;
 mod kind;
 mod limits;
 mod many;
 mod mesh;
 mod monitor;
+mod motion;
 mod object;
 #[cfg(feature = "archive")]
 mod panic;
 mod params;
+mod plan;
+mod plan_failure;
 mod pose;
 mod predict;
+mod reachable;
 mod region;
 mod request;
 mod sample;
+mod slots;
 mod status;
 mod supporter;
 mod version;
 mod volume;
 mod volume_settings;
+mod waypoint;
 
 pub use cloud::hangpose_cloud;
 pub use depth_image::*;
@@ -48,10 +55,16 @@ pub use limits::*;
 pub use many::{hangpose_many, hangpose_predict_many};
 pub use mesh::hangpose_mesh;
 pub use monitor::*;
+pub use motion::{
+    HANGPOSE_MAX_PARTS, hangpose_accepts, hangpose_capsule, hangpose_motion, hangpose_motion_init,
+};
 pub use object::*;
 pub use params::*;
+pub use plan::{hangpose_plan, hangpose_plan_path};
+pub use plan_failure::*;
 pub use pose::*;
 pub use predict::{hangpose_predict, hangpose_prediction};
+pub use reachable::hangpose_predict_reachable;
 pub use region::*;
 pub use request::{
     HANGPOSE_MAX_HUNG, HANGPOSE_MAX_SYMMETRIES, hangpose_hung, hangpose_request, hangpose_request_init,
@@ -62,3 +75,4 @@ pub use supporter::*;
 pub use version::*;
 pub use volume::*;
 pub use volume_settings::*;
+pub use waypoint::hangpose_waypoint;

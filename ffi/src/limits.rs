@@ -5,11 +5,14 @@ use crate::failure::Failure;
 use crate::mesh::hangpose_mesh;
 use crate::object::ObjectHandle;
 use crate::params::hangpose_params;
-use crate::predict::pose_bytes;
+use crate::plan::plan_needs;
+use crate::reachable::reachable_needs;
+use crate::slots::slot_bytes;
 use crate::status::*;
 use crate::supporter::SupporterHandle;
-use hangpose_core::hanging::{Object, Supporter, predict_bytes};
+use hangpose_core::hanging::{HangingPose, Object, Supporter, predict_bytes};
 use hangpose_core::memory::Limits;
+use hangpose_core::motion::Motion;
 
 /// The largest inputs for which memory is reserved. Smaller inputs need no more memory.
 #[repr(C)]
@@ -27,8 +30,15 @@ pub struct hangpose_limits {
     pub voxels: u32,
     /// Number of points of the supporter's cloud.
     pub points: u32,
-    /// Value of `pose_capacity` for hangpose_predict, or of `object_count` for hangpose_predict_many.
+    /// Value of `pose_capacity` for hangpose_predict or hangpose_predict_reachable, or of `object_count` for
+    /// hangpose_predict_many.
     pub poses: u32,
+    /// Value of hangpose_request.scene_point_count, for planning.
+    pub scene_points: u32,
+    /// Value of hangpose_motion.nodes.
+    pub nodes: u32,
+    /// Value of `waypoint_capacity` for hangpose_plan_path or hangpose_predict_reachable.
+    pub waypoints: u32,
 }
 
 // SAFETY: `repr(C)` over numbers, `struct_size` first.
@@ -48,9 +58,9 @@ impl hangpose_limits {
     }
 }
 
-/// Sets `limits` to what `params`, `mesh` and `cloud` need, with `poses` 1. `mesh` or `cloud` may be null and then
-/// counts as empty. Only the counts are read, not the arrays. Set limits->struct_size before the call. Returns
-/// HANGPOSE_OK, or an error.
+/// Sets `limits` to what `params`, `mesh` and `cloud` need, with `poses` 1, `nodes` that of hangpose_motion_init, and no
+/// scene points and waypoints. `mesh` or `cloud` may be null and then counts as empty. Only the counts are read, not the
+/// arrays. Set limits->struct_size before the call. Returns HANGPOSE_OK, or an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_limits_of(
     params: *const hangpose_params,
@@ -80,6 +90,9 @@ pub unsafe extern "C" fn hangpose_limits_of(
             voxels: params.voxels,
             points: cloud.map_or(0, |cloud| cloud.point_count),
             poses: 1,
+            scene_points: 0,
+            nodes: Motion::DEFAULT.nodes as u32,
+            waypoints: 0,
         };
         Ok(HANGPOSE_OK)
     };
@@ -114,7 +127,39 @@ pub unsafe extern "C" fn hangpose_supporter_bytes(limits: *const hangpose_limits
 pub unsafe extern "C" fn hangpose_predict_bytes(limits: *const hangpose_limits) -> usize {
     // SAFETY: the caller vouches for the pointer.
     unsafe {
-        bytes(limits, |limits| pose_bytes(limits.poses).saturating_add(predict_bytes(&limits.to_core())))
+        bytes(limits, |limits| {
+            let poses = slot_bytes::<HangingPose>(limits.poses as usize);
+            poses.saturating_add(predict_bytes(&limits.to_core()))
+        })
+    }
+}
+
+/// Returns the bytes of working memory for hangpose_plan_path with any object and supporter within `limits`; depends on
+/// points, scene_points, nodes and waypoints. Returns 0 if `limits` is null or its struct_size is wrong. For limits beyond
+/// any memory the result is larger than any memory; it does not wrap around.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_plan_bytes(limits: *const hangpose_limits) -> usize {
+    // SAFETY: the caller vouches for the pointer.
+    unsafe {
+        bytes(limits, |limits| {
+            let (scene, nodes) = (limits.scene_points as usize, limits.nodes as usize);
+            plan_needs(&limits.to_core(), scene, nodes, limits.waypoints as usize)
+        })
+    }
+}
+
+/// Returns the bytes of working memory for hangpose_predict_reachable with any object and supporter within `limits`;
+/// depends on points, poses, scene_points, nodes and waypoints. Returns 0 if `limits` is null or its struct_size is wrong.
+/// For limits beyond any memory the result is larger than any memory; it does not wrap around.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hangpose_reachable_bytes(limits: *const hangpose_limits) -> usize {
+    // SAFETY: the caller vouches for the pointer.
+    unsafe {
+        bytes(limits, |limits| {
+            let (scene, nodes) = (limits.scene_points as usize, limits.nodes as usize);
+            let (poses, waypoints) = (limits.poses as usize, limits.waypoints as usize);
+            reachable_needs(&limits.to_core(), scene, nodes, poses, waypoints)
+        })
     }
 }
 

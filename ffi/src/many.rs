@@ -9,13 +9,16 @@ use crate::monitor::{self, hangpose_monitor};
 use crate::object::{ObjectHandle, hangpose_object};
 use crate::params::hangpose_params;
 use crate::pose::hangpose_pose;
-use crate::predict::pose_slots;
 use crate::request::{HANGPOSE_MAX_HUNG, HungObjects, hangpose_request};
+use crate::slots::{check_room, slot_bytes, slots};
 use crate::status::*;
 use crate::supporter::{SupporterHandle, hangpose_supporter};
 use core::ffi::c_void;
 use hangpose_core::Monitor;
-use hangpose_core::hanging::{Many, Object, predict_bytes, predict_many};
+use hangpose_core::hanging::{HangingPose, Many, Object, predict_bytes, predict_many};
+
+// The memory for a number of poses holds as many that may be missing.
+const _: () = assert!(size_of::<Option<HangingPose>>() == size_of::<HangingPose>());
 
 /// Result of hangpose_predict_many beside the poses.
 #[repr(C)]
@@ -120,7 +123,10 @@ pub unsafe extern "C" fn hangpose_predict_many(
         let request = unsafe { request.check(&hung, symmetries.as_deref()) }?;
         let supporter = supporter.model();
         let models: heapless::Vec<&Object, HANGPOSE_MAX_HUNG> = shared.iter().map(Shared::model).collect();
-        let (slots, memory) = pose_slots(memory, object_count, predict_bytes(&supporter.limits()))?;
+        let count = object_count as usize;
+        let needed = slot_bytes::<HangingPose>(count).saturating_add(predict_bytes(&supporter.limits()));
+        check_room(memory, needed)?;
+        let (slots, memory) = slots(memory, count);
         let none = Monitor::new();
         let found =
             predict_many(&models, supporter, &request, &params, slots, memory, monitor.unwrap_or(&none))?;

@@ -1,6 +1,7 @@
 use crate::detail::HANGPOSE_NO_INDEX;
+use crate::failure::{Failure, Place};
 use crate::kind::{hangpose_kind, kind};
-use hangpose_core::geometry::{Pose, Vector};
+use hangpose_core::geometry::{MAX_COORDINATE, Pose, Vector};
 use hangpose_core::hanging::HangingPose;
 use hangpose_core::hanging::sites::{Cost, SiteMatch};
 use hangpose_core::mechanics::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};
@@ -140,6 +141,18 @@ pub(crate) fn pose_of(position: [f32; 3], [x, y, z, w]: [f32; 4]) -> Option<Pose
     let rotation = UnitQuaternion::from_quaternion(quaternion);
     let is_rotation = quaternion.norm_squared().is_normal();
     is_rotation.then(|| Pose::from_parts(Vector::from(position).into(), rotation))
+}
+
+/// The pose of a position and a quaternion in fields with these names.
+pub(crate) fn checked_pose(
+    (position_field, position): (&'static str, [f32; 3]),
+    (quaternion_field, quaternion): (&'static str, [f32; 4]),
+) -> Result<Pose, Failure> {
+    let wrong = |place: Place| Failure::Pose { spot: place.into() };
+    if !position.iter().all(|x| x.abs() <= MAX_COORDINATE) {
+        return Err(wrong(Place::of(position_field).coordinate(None, position)));
+    }
+    pose_of(position, quaternion).ok_or_else(|| wrong(Place::of(quaternion_field)))
 }
 
 impl From<&HangingPose> for hangpose_pose {

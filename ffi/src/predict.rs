@@ -9,6 +9,7 @@ use crate::object::{ObjectHandle, hangpose_object};
 use crate::params::hangpose_params;
 use crate::pose::hangpose_pose;
 use crate::request::{HungObjects, hangpose_request};
+use crate::slots::{check_room, slot_bytes, slots};
 use crate::status::*;
 use crate::supporter::{SupporterHandle, hangpose_supporter};
 use core::ffi::c_void;
@@ -87,14 +88,6 @@ unsafe impl Public for hangpose_prediction {
 // SAFETY: `repr(C)` over numbers, `struct_size` first.
 unsafe impl Public for hangpose_pose {
     const NAME: &'static str = "poses";
-}
-
-// The memory for a number of poses holds as many that may be missing.
-const _: () = assert!(size_of::<Option<HangingPose>>() == size_of::<HangingPose>());
-
-/// Bytes for `count` poses of the core in memory that begins at any address.
-pub(crate) fn pose_bytes(count: u32) -> usize {
-    size_of::<HangingPose>().saturating_mul(count as usize).saturating_add(align_of::<HangingPose>() - 1)
 }
 
 /// Finds poses in which `object` hangs on `supporter` as `request` asks and writes the best to `poses`, best first.
@@ -179,7 +172,10 @@ pub unsafe extern "C" fn hangpose_predict(
         // SAFETY: as above.
         let request = unsafe { request.check(&hung, symmetries.as_deref()) }?;
         let (object, supporter) = (object.model(), supporter.model());
-        let (slots, memory) = pose_slots(memory, pose_capacity, predict_bytes(&supporter.limits()))?;
+        let count = pose_capacity as usize;
+        let needed = slot_bytes::<HangingPose>(count).saturating_add(predict_bytes(&supporter.limits()));
+        check_room(memory, needed)?;
+        let (slots, memory) = slots(memory, count);
         let none = Monitor::new();
         let found = predict(object, supporter, &request, &params, slots, memory, monitor.unwrap_or(&none))?;
         for (index, pose) in found.poses.iter().enumerate() {
@@ -195,30 +191,6 @@ pub unsafe extern "C" fn hangpose_predict(
     };
     // SAFETY: the caller vouches for the detail.
     unsafe { report::<Failure>(detail, call) }
-}
-
-/// Splits `memory` into `count` poses of the core, whose layout is not that of C, and the rest, of at least
-/// `others` bytes. `P` is a [`HangingPose`] or one that may be missing.
-pub(crate) fn pose_slots<P: Copy + Default>(
-    memory: &mut [u8],
-    count: u32,
-    others: usize,
-) -> Result<(&mut [P], &mut [u8]), Failure> {
-    const { assert!(size_of::<P>() == size_of::<HangingPose>()) };
-    const { assert!(align_of::<P>() == align_of::<HangingPose>()) };
-    let (needed, given) = (pose_bytes(count).saturating_add(others), memory.len());
-    if given < needed {
-        return Err(Failure::Memory { argument: "memory", needed, given });
-    }
-    let skip = memory.as_ptr().align_offset(align_of::<P>());
-    let (front, rest) = memory[skip..].split_at_mut(size_of::<P>() * count as usize);
-    let first = front.as_mut_ptr().cast::<P>();
-    for index in 0..count as usize {
-        // SAFETY: aligned, and within the bytes counted above.
-        unsafe { first.add(index).write(P::default()) };
-    }
-    // SAFETY: all of them are initialised, and the memory is borrowed as long as they are.
-    Ok((unsafe { core::slice::from_raw_parts_mut(first, count as usize) }, rest))
 }
 
 impl From<&Prediction<'_>> for hangpose_prediction {

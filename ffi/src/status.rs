@@ -2,7 +2,7 @@ use core::ffi::{CStr, c_char};
 use hangpose_core::Stop;
 use hangpose_core::hanging::Stage;
 
-/// Result of a call. 0: done. Above 0: a valid result that is not, or not only, poses. Below 0: an error of the
+/// Result of a call. 0: done. Above 0: a valid result that is not, or not only, poses or a path. Below 0: an error of the
 /// caller; the call did nothing, and hangpose_detail says what to correct.
 pub type hangpose_status = i32;
 
@@ -17,6 +17,8 @@ pub const HANGPOSE_CANCELLED: hangpose_status = 2;
 /// The work limit of the monitor was reached, in this call or in the analysis of one of its models. The results
 /// found so far are returned. hangpose_volume_integrate has none, and leaves the volume as it was.
 pub const HANGPOSE_WORK_LIMIT: hangpose_status = 3;
+/// No path was found to the pose, or to any of the poses; hangpose_plan.failure says why.
+pub const HANGPOSE_NO_PATH: hangpose_status = 4;
 
 /// A required pointer is null.
 pub const HANGPOSE_ERROR_NULL: hangpose_status = -1;
@@ -141,6 +143,7 @@ pub(crate) fn status_text(status: hangpose_status) -> &'static CStr {
         HANGPOSE_REJECTED => c"nothing hangs",
         HANGPOSE_CANCELLED => c"cancelled",
         HANGPOSE_WORK_LIMIT => c"the work limit was reached",
+        HANGPOSE_NO_PATH => c"no path was found",
         HANGPOSE_ERROR_NULL => c"a pointer is null",
         HANGPOSE_ERROR_MISALIGNED => c"a pointer is misaligned",
         HANGPOSE_ERROR_STRUCT_SIZE => c"a struct_size is wrong",
@@ -232,10 +235,10 @@ mod tests {
 
     #[test]
     fn every_status_has_words() {
-        for status in -17..=3 {
+        for status in -17..=4 {
             assert_ne!(status_text(status), c"unknown status", "{status}");
         }
-        for status in [i32::MIN, -18, 4, i32::MAX] {
+        for status in [i32::MIN, -18, 5, i32::MAX] {
             assert_eq!(status_text(status), c"unknown status");
         }
     }

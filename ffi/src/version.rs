@@ -3,7 +3,7 @@ use core::ffi::{CStr, c_char};
 
 /// Version of the structs and functions in this header. hangpose_params_init and hangpose_check_abi refuse a
 /// program whose header has another version than the library.
-pub const HANGPOSE_ABI_VERSION: u32 = 2;
+pub const HANGPOSE_ABI_VERSION: u32 = 3;
 
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");
 

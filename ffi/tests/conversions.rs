@@ -7,6 +7,7 @@ use hangpose::hanging::{
     Tolerance, contacts,
 };
 use hangpose::mechanics::{Contact, Kind, Margin, Unseen};
+use hangpose::motion::{self, Collision, Mover, Obstacle, Plan, PlanCounts, PlanFailure, Waypoint};
 use hangpose::{Monitor, Params, Stop, Work, analyze_object, analyze_supporter, files, predict_poses};
 use hangpose_ffi::*;
 use std::path::Path;
@@ -146,6 +147,75 @@ fn a_pose_without_rest_and_match_says_so() {
 }
 
 /// x, y, z, w of the rotation.
+#[test]
+fn every_number_of_a_plan_reaches_its_field() {
+    let waypoint = |seconds| Waypoint { seconds, pose: Pose::identity() };
+    let (object, gripper) = ([1.0, 2.0, 3.0].map(waypoint), [4.0, 5.0].map(waypoint));
+    let path = motion::Path { object: &object, release: 1, gripper: &gripper, clearance: 0.125 };
+    let counts = PlanCounts { samples: 11, nodes: 12, poses: 13, asked: 14 };
+    let plan = Plan { path: Ok(path), counts, work: Work { rays: 1 << 40, distance_queries: 1 << 41 } };
+    let c = hangpose_plan::from(&plan);
+    assert_eq!(c.struct_size as usize, size_of::<hangpose_plan>());
+    assert_eq!((c.has_path, c.waypoint_count, c.release, c.gripper_waypoint_count), (1, 3, 1, 2));
+    assert_eq!((c.clearance, c.failure.reason, c.failure.stopped), (0.125, HANGPOSE_PLAN_FOUND, HANGPOSE_OK));
+    assert_eq!((c.samples, c.nodes, c.tested, c.asked), (11, 12, 13, 14));
+    assert_eq!((c.rays, c.distance_queries), (1 << 40, 1 << 41));
+
+    let failed = hangpose_plan::from(&Plan { path: Err(PlanFailure::BudgetUsedUp { samples: 15 }), ..plan });
+    assert_eq!((failed.has_path, failed.waypoint_count, failed.gripper_waypoint_count), (0, 0, 0));
+    assert!(failed.clearance.is_nan());
+    assert_eq!((failed.failure.reason, failed.failure.count), (HANGPOSE_PLAN_BUDGET_USED_UP, 15));
+    assert_eq!((failed.samples, failed.distance_queries), (11, 1 << 41));
+}
+
+#[test]
+fn every_number_of_a_waypoint_reaches_its_field() {
+    let pose = Pose::new(Vector::new(1.0, 2.0, 3.0), Vector::new(0.1, 0.2, 0.3));
+    let c = hangpose_waypoint::from(&Waypoint { seconds: 4.0, pose });
+    assert_eq!(c.struct_size as usize, size_of::<hangpose_waypoint>());
+    assert_eq!((c.seconds, c.position, c.quaternion), (4.0, [1.0, 2.0, 3.0], xyzw(&pose)));
+}
+
+#[test]
+fn every_failure_of_a_plan_has_its_numbers() {
+    let collision = |mover, obstacle| Collision { mover, obstacle, at: [1.0, 2.0, 3.0], distance: -0.25 };
+    for (mover, obstacle, expected) in [
+        (Mover::Object, Obstacle::Supporter, [1, HANGPOSE_NO_INDEX, 1, HANGPOSE_NO_INDEX]),
+        (Mover::Gripper(7), Obstacle::Scene(8), [2, 7, 2, 8]),
+        (Mover::Object, Obstacle::Hung(9), [1, HANGPOSE_NO_INDEX, 3, 9]),
+        (Mover::Gripper(0), Obstacle::Object, [2, 0, 4, HANGPOSE_NO_INDEX]),
+    ] {
+        let both = collision(mover, obstacle);
+        for (failure, reason) in [
+            (PlanFailure::GoalInCollision(both), HANGPOSE_PLAN_GOAL_IN_COLLISION),
+            (PlanFailure::StartInCollision(both), HANGPOSE_PLAN_START_IN_COLLISION),
+            (PlanFailure::GripperCannotOpen(both), HANGPOSE_PLAN_GRIPPER_CANNOT_OPEN),
+        ] {
+            let c = hangpose_plan_failure::from(&failure);
+            assert_eq!((c.reason, [c.mover, c.part, c.obstacle, c.obstacle_index]), (reason, expected));
+            assert_eq!((c.position, c.distance, c.count), ([1.0, 2.0, 3.0], -0.25, 0));
+            assert!(c.resolution.is_nan());
+        }
+    }
+    let c = hangpose_plan_failure::from(&PlanFailure::Enclosed { resolution: 0.5 });
+    assert_eq!((c.reason, c.resolution), (HANGPOSE_PLAN_ENCLOSED, 0.5));
+    assert_eq!((c.mover, c.obstacle, c.part), (0, 0, HANGPOSE_NO_INDEX));
+    assert!(c.distance.is_nan() && c.position.iter().all(|x| x.is_nan()));
+    let c = hangpose_plan_failure::from(&PlanFailure::TreesFull { nodes: 16 });
+    assert_eq!((c.reason, c.count), (HANGPOSE_PLAN_TREES_FULL, 16));
+    for (stop, status) in [(Stop::Cancelled, HANGPOSE_CANCELLED), (Stop::WorkLimit, HANGPOSE_WORK_LIMIT)] {
+        let c = hangpose_plan_failure::from(&PlanFailure::Stopped(stop));
+        assert_eq!((c.reason, c.stopped), (HANGPOSE_PLAN_STOPPED, status));
+    }
+    for (failure, reason) in [
+        (PlanFailure::GoalOutsideWorkspace, HANGPOSE_PLAN_GOAL_OUTSIDE_WORKSPACE),
+        (PlanFailure::StartOutsideWorkspace, HANGPOSE_PLAN_START_OUTSIDE_WORKSPACE),
+        (PlanFailure::GripperCannotLeave, HANGPOSE_PLAN_GRIPPER_CANNOT_LEAVE),
+    ] {
+        assert_eq!(hangpose_plan_failure::from(&failure).reason, reason);
+    }
+}
+
 fn xyzw(pose: &Pose) -> [f32; 4] {
     let q = pose.rotation.quaternion();
     [q.i, q.j, q.k, q.w]

@@ -2,6 +2,8 @@
 
 #[path = "request/many.rs"]
 mod many;
+#[path = "request/plan.rs"]
+mod plan;
 
 use hangpose_ffi::*;
 use std::ffi::CStr;
@@ -75,6 +77,9 @@ const NO_LIMITS: hangpose_limits = hangpose_limits {
     voxels: 0,
     points: 0,
     poses: 0,
+    scene_points: 0,
+    nodes: 0,
+    waypoints: 0,
 };
 
 fn turn(step: u32, steps: u32) -> f32 {

@@ -10,6 +10,9 @@ const NONE: hangpose_limits = hangpose_limits {
     voxels: 0,
     points: 0,
     poses: 0,
+    scene_points: 0,
+    nodes: 0,
+    waypoints: 0,
 };
 
 /// The value of a constant of the header.
@@ -84,6 +87,42 @@ fn the_macros_never_give_less_than_the_queries() {
 }
 
 #[test]
+fn the_macros_of_planning_never_give_less_than_the_queries() {
+    let sizes = [0, 1, 100, 12_345, 100_000, 1_000_000];
+    let [at_least, point, scene_point, node, waypoint] =
+        ["AT_LEAST", "EACH_POINT", "EACH_SCENE_POINT", "EACH_NODE", "EACH_WAYPOINT"]
+            .map(|name| constant(&format!("HANGPOSE_PLAN_BYTES_{name}")));
+    let [more, each_point, each_pose, each_scene_point, each_node, each_waypoint] =
+        ["AT_LEAST", "EACH_POINT", "EACH_POSE", "EACH_SCENE_POINT", "EACH_NODE", "EACH_WAYPOINT"]
+            .map(|name| constant(&format!("HANGPOSE_REACHABLE_BYTES_{name}")));
+    for points in sizes {
+        for scene_points in sizes {
+            for nodes in sizes {
+                for waypoints in sizes {
+                    let poses = waypoints / 10;
+                    let limits = hangpose_limits { points, scene_points, nodes, waypoints, poses, ..NONE };
+                    let [p, s, n, w, k] =
+                        [points, scene_points, nodes, waypoints, poses].map(|count| count as usize);
+                    let given = at_least + point * p + scene_point * s + node * n + waypoint * w;
+                    let reachable = more
+                        + each_point * p
+                        + each_scene_point * s
+                        + each_node * n
+                        + each_waypoint * w
+                        + each_pose * k;
+                    // SAFETY: the pointer leads to valid limits.
+                    let [needed, needed_reachable] =
+                        unsafe { [hangpose_plan_bytes(&limits), hangpose_reachable_bytes(&limits)] };
+                    let what = format!("{p} points, {s} scene points, {n} nodes, {w} waypoints");
+                    assert!(given >= needed, "{what}: {given} < {needed}");
+                    assert!(reachable >= needed_reachable, "{what}: {reachable} < {needed_reachable}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn the_macros_of_blocks_never_give_less_than_the_queries() {
     let queries: [(_, extern "C" fn(u32) -> usize); 3] = [
         ("VOLUME", hangpose_volume_bytes),
@@ -116,6 +155,9 @@ fn limits_beyond_all_memory_do_not_wrap() {
         voxels: most,
         points: most,
         poses: most,
+        scene_points: most,
+        nodes: most,
+        waypoints: most,
         ..NONE
     };
     // SAFETY: the pointer leads to valid limits.
@@ -123,6 +165,8 @@ fn limits_beyond_all_memory_do_not_wrap() {
         assert!(hangpose_object_bytes(&limits) > most as usize);
         assert!(hangpose_supporter_bytes(&limits) > most as usize);
         assert!(hangpose_predict_bytes(&limits) > most as usize);
+        assert!(hangpose_plan_bytes(&limits) > most as usize);
+        assert!(hangpose_reachable_bytes(&limits) > most as usize);
         let unset = hangpose_limits { struct_size: 0, ..limits };
         assert_eq!(hangpose_object_bytes(&unset), 0);
         assert_eq!(hangpose_supporter_bytes(core::ptr::null()), 0);

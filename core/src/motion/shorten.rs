@@ -1,5 +1,6 @@
 //! Makes a route short and smooth.
 
+use super::path::MAX_CLEARANCE;
 use super::placement::Placement;
 use super::route::Route;
 use super::space::Space;
@@ -8,6 +9,8 @@ use crate::random::Random;
 
 /// Random shortcuts that are tried.
 const SHORTCUTS: usize = 24;
+/// Travel that a shortcut saves at least, metres.
+const WORTH_IT: f32 = 0.003;
 /// Rounds in which corners are cut.
 const ROUNDS: usize = 2;
 /// Share of either leg that is cut off at a corner.
@@ -24,7 +27,7 @@ pub(super) fn shorten(
     meter: &mut Meter,
 ) -> Result<(), Stop> {
     let reach = space.moving.reach;
-    let mut shortcut = Shortcut { space, required, clearance };
+    let mut shortcut = Shortcut { space, required, clearance, least_saving: WORTH_IT };
     // Past as many places as possible at once, then fewer.
     let mut first = 0;
     while first + 2 <= route.legs() {
@@ -42,6 +45,7 @@ pub(super) fn shorten(
             shortcut.between(from, to, route, meter)?;
         }
     }
+    shortcut.least_saving = 0.0;
     for _ in 0..ROUNDS {
         let mut leg = 0;
         while leg + 1 < route.legs() {
@@ -60,6 +64,8 @@ struct Shortcut<'q, 'a> {
     space: &'q mut Space<'a>,
     required: f32,
     clearance: f32,
+    /// Travel that a shortcut saves at least, metres.
+    least_saving: f32,
 }
 
 impl Shortcut<'_, '_> {
@@ -75,8 +81,23 @@ impl Shortcut<'_, '_> {
         let point = |leg: usize, share: f32| route.places()[leg].after(&route.leg(leg), share);
         let (start, end) = (point(first, from), point(last, to));
         let leg = start.leg_to(&end);
+        let reach = self.space.moving.reach;
+        let part = |leg: usize| {
+            let share =
+                1.0 - if leg == first { from } else { 0.0 } - if leg == last { 1.0 - to } else { 0.0 };
+            route.leg(leg).travel(reach) * share
+        };
+        let before = (first..=last).map(part).sum::<f32>();
+        if before - leg.travel(reach) < self.least_saving {
+            return Ok(false);
+        }
+        // In the middle a shortcut is most likely blocked.
+        let middle = self.space.nearest(&start.after(&leg, 0.5), MAX_CLEARANCE, meter)?.distance;
         let least = route.clearance(first..last + 1);
         let required = least.min(self.clearance).max(self.required);
+        if middle < required {
+            return Ok(false);
+        }
         let way = self.space.way(&start, &leg, required, meter)?;
         if !way.is_free() {
             return Ok(false);

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// The source files in the order of the header.
-const SOURCES: [&str; 21] = [
+const SOURCES: [&str; 26] = [
     "version",
     "status",
     "detail",
@@ -24,6 +24,11 @@ const SOURCES: [&str; 21] = [
     "pose",
     "predict",
     "many",
+    "motion",
+    "waypoint",
+    "plan_failure",
+    "plan",
+    "reachable",
     "sample",
     "depth_image",
     "volume_settings",

@@ -1,15 +1,16 @@
 //! The constants of the macros `HANGPOSE_*_BYTES`, computed from the size queries.
 
 use hangpose_ffi::{
-    hangpose_complete_bytes, hangpose_limits, hangpose_object_bytes, hangpose_predict_bytes,
-    hangpose_supporter_bytes, hangpose_surface_bytes, hangpose_volume_bytes,
+    hangpose_complete_bytes, hangpose_limits, hangpose_object_bytes, hangpose_plan_bytes,
+    hangpose_predict_bytes, hangpose_reachable_bytes, hangpose_supporter_bytes, hangpose_surface_bytes,
+    hangpose_volume_bytes,
 };
 
 type Query = unsafe extern "C" fn(*const hangpose_limits) -> usize;
 /// The name of a counted element and the field with its count.
 type Field = (&'static str, fn(&mut hangpose_limits) -> &mut u32);
 
-const QUERIES: [(&str, Query, &[Field]); 3] = [
+const QUERIES: [(&str, Query, &[Field]); 5] = [
     (
         "OBJECT",
         hangpose_object_bytes,
@@ -25,6 +26,27 @@ const QUERIES: [(&str, Query, &[Field]); 3] = [
         "PREDICT",
         hangpose_predict_bytes,
         &[("POINT", |limits| &mut limits.points), ("POSE", |limits| &mut limits.poses)],
+    ),
+    (
+        "PLAN",
+        hangpose_plan_bytes,
+        &[
+            ("POINT", |limits| &mut limits.points),
+            ("SCENE_POINT", |limits| &mut limits.scene_points),
+            ("NODE", |limits| &mut limits.nodes),
+            ("WAYPOINT", |limits| &mut limits.waypoints),
+        ],
+    ),
+    (
+        "REACHABLE",
+        hangpose_reachable_bytes,
+        &[
+            ("POINT", |limits| &mut limits.points),
+            ("POSE", |limits| &mut limits.poses),
+            ("SCENE_POINT", |limits| &mut limits.scene_points),
+            ("NODE", |limits| &mut limits.nodes),
+            ("WAYPOINT", |limits| &mut limits.waypoints),
+        ],
     ),
 ];
 
@@ -47,6 +69,9 @@ pub(super) fn defines() -> String {
             voxels: 0,
             points: 0,
             poses: 0,
+            scene_points: 0,
+            nodes: 0,
+            waypoints: 0,
         };
         // SAFETY: the pointer leads to valid limits.
         let bytes = |limits: hangpose_limits| unsafe { query(&limits) };

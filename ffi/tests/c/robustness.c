@@ -460,6 +460,172 @@ static void requests(void) {
   CHECK(is_unharmed());
 }
 
+// Planning: the callback, and every argument that is new in these calls.
+enum { WAYPOINTS = 300 };
+static unsigned char *plan_work;
+static size_t plan_size;
+static hangpose_waypoint waypoints[WAYPOINTS];
+static hangpose_plan_failure reasons[POSES];
+
+static int32_t refuse(void *context, const float *position, const float *quaternion) {
+  CHECK(position[0] == position[0] && quaternion[3] == quaternion[3]);
+  ++*(int *)context;
+  return 0;
+}
+static int32_t cancel(void *context, const float *position, const float *quaternion) {
+  (void)position, (void)quaternion;
+  hangpose_monitor_cancel(context);
+  return 1;
+}
+// Changes the supporter from within the call that uses it, and asks the library for something else.
+static int32_t meddle(void *context, const float *position, const float *quaternion) {
+  (void)context, (void)position, (void)quaternion;
+  hangpose_detail said = {.struct_size = sizeof said};
+  CHECK(hangpose_supporter_update(supporter, &cloud, &params, NULL, &said) == HANGPOSE_ERROR_BUSY);
+  CHECK(is_unharmed());
+  return 1;
+}
+
+static hangpose_status plan_with(const hangpose_motion *motion, const hangpose_pose *goal,
+                                 hangpose_monitor *watch, hangpose_plan *plan) {
+  return hangpose_plan_path(object, supporter, NULL, &params, motion, goal, plan_work, plan_size, watch,
+                            waypoints, sizeof *waypoints, WAYPOINTS, plan, &detail);
+}
+static hangpose_status reach(const hangpose_motion *motion, hangpose_plan_failure *failures,
+                             uint32_t capacity, hangpose_plan *plan) {
+  hangpose_pose poses[POSES];
+  hangpose_prediction found = {.struct_size = sizeof found};
+  return hangpose_predict_reachable(object, supporter, NULL, &params, motion, plan_work, plan_size, NULL,
+                                    poses, sizeof *poses, POSES, failures, sizeof *failures, waypoints,
+                                    sizeof *waypoints, capacity, &found, plan, &detail);
+}
+
+static void planning(void) {
+  static unsigned char odd[sizeof(hangpose_motion) + 8];
+  const uint32_t sizes[] = {0, 1, 4, 1000, UINT32_MAX};
+  const uint32_t words[] = {0xFFFFFFFF, 0x7F800000, 0xFF800000, 0x80000001, 0x4B000000};
+  hangpose_plan plan = {.struct_size = sizeof plan};
+  hangpose_motion good, m;
+  hangpose_pose goal = right[0];
+  hangpose_monitor watch;
+  CHECK(hangpose_motion_init(&good, sizeof good, &detail) == HANGPOSE_OK);
+  good.nodes = 64;
+  limits.nodes = good.nodes;
+  limits.waypoints = WAYPOINTS;
+  CHECK(HANGPOSE_PLAN_BYTES(POINTS, 0, 64, WAYPOINTS) >= hangpose_plan_bytes(&limits));
+  CHECK(HANGPOSE_REACHABLE_BYTES(POINTS, POSES, 0, 64, WAYPOINTS) >= hangpose_reachable_bytes(&limits));
+  // The needed memory at any address, and a byte less.
+  for (size_t offset = 0; offset < 5; ++offset) {
+    plan_size = hangpose_reachable_bytes(&limits);
+    plan_work = guarded(plan_size, offset);
+    CHECK(reach(&good, reasons, WAYPOINTS, &plan) >= 0);
+    --plan_size;
+    CHECK(reach(&good, reasons, WAYPOINTS, &plan) == HANGPOSE_ERROR_MEMORY);
+    release(plan_work, plan_size + 1, offset);
+    plan_size = hangpose_plan_bytes(&limits);
+    plan_work = guarded(plan_size, offset);
+    CHECK(plan_with(&good, &goal, NULL, &plan) >= 0);
+    --plan_size;
+    CHECK(plan_with(&good, &goal, NULL, &plan) == HANGPOSE_ERROR_MEMORY);
+    release(plan_work, plan_size + 1, offset);
+  }
+  plan_size = hangpose_reachable_bytes(&limits);
+  plan_work = guarded(plan_size, 0);
+  CHECK(reach(&good, reasons, WAYPOINTS, &plan) == HANGPOSE_OK && plan.has_path == 1);
+  CHECK(plan.waypoint_count >= 2 && reasons[plan.pose_index].reason == HANGPOSE_PLAN_FOUND);
+  CHECK(reach(NULL, NULL, WAYPOINTS, &plan) == HANGPOSE_ERROR_MEMORY);  // the default has more nodes
+  CHECK(reach(&good, NULL, 1, &plan) == HANGPOSE_ERROR_CAPACITY && detail.minimum > 1);
+  // Callbacks.
+  int asked = 0;
+  m = good, m.accepts = refuse, m.context = &asked;
+  CHECK(plan_with(&m, &goal, NULL, &plan) == HANGPOSE_NO_PATH && asked == 1 && plan.asked == 1);
+  CHECK(plan.failure.reason == HANGPOSE_PLAN_GOAL_OUTSIDE_WORKSPACE && plan.has_path == 0);
+  CHECK(reach(&m, reasons, WAYPOINTS, &plan) == HANGPOSE_NO_PATH);
+  hangpose_monitor_init(&watch, sizeof watch, HANGPOSE_NO_WORK_LIMIT, NULL);
+  m.accepts = cancel, m.context = &watch;
+  CHECK(plan_with(&m, &goal, &watch, &plan) == HANGPOSE_CANCELLED);
+  CHECK(plan.failure.reason == HANGPOSE_PLAN_STOPPED && plan.failure.stopped == HANGPOSE_CANCELLED);
+  m.accepts = meddle, m.context = NULL;
+  CHECK(plan_with(&m, &goal, NULL, &plan) == HANGPOSE_OK);
+  // Null and misaligned.
+  for (int i = 0; i < 2; ++i) {
+    void *const bad = i == 0 ? NULL : odd + 1;
+    REFUSED(hangpose_motion_init(bad, sizeof m, &detail));
+    CHECK(hangpose_plan_bytes(bad) == 0 && hangpose_reachable_bytes(bad) == 0);
+    REFUSED(plan_with(&good, bad, NULL, &plan));
+    REFUSED(plan_with(&good, &goal, NULL, bad));
+    REFUSED(reach(&good, NULL, WAYPOINTS, bad));
+    REFUSED(hangpose_plan_path(object, supporter, NULL, &params, &good, &goal, plan_work, plan_size, NULL,
+                               bad, sizeof *waypoints, WAYPOINTS, &plan, &detail));
+    REFUSED(hangpose_plan_path(bad, supporter, NULL, &params, &good, &goal, plan_work, plan_size, NULL,
+                               waypoints, sizeof *waypoints, WAYPOINTS, &plan, &detail));
+    REFUSED(hangpose_plan_path(object, bad, NULL, &params, &good, &goal, plan_work, plan_size, NULL,
+                               waypoints, sizeof *waypoints, WAYPOINTS, &plan, &detail));
+    REFUSED(hangpose_plan_path(object, supporter, NULL, bad, &good, &goal, plan_work, plan_size, NULL,
+                               waypoints, sizeof *waypoints, WAYPOINTS, &plan, &detail));
+    m = good, m.part_count = 1, m.parts = bad;
+    REFUSED(plan_with(&m, &goal, NULL, &plan));
+    m.part_count = UINT32_MAX;
+    REFUSED(plan_with(&m, &goal, NULL, &plan));
+  }
+  REFUSED(plan_with((void *)(odd + 1), &goal, NULL, &plan));
+  REFUSED(reach(&good, (void *)(odd + 1), WAYPOINTS, &plan));
+  REFUSED(hangpose_plan_path(object, supporter, NULL, &params, &good, &goal, NULL, plan_size, NULL, waypoints,
+                             sizeof *waypoints, WAYPOINTS, &plan, &detail));
+  // Sizes of structs.
+  for (int i = 0; i < 5; ++i) {
+    REFUSED(hangpose_motion_init(&m, sizes[i], &detail));
+    m = good, m.struct_size = sizes[i];
+    REFUSED(plan_with(&m, &goal, NULL, &plan));
+    plan.struct_size = sizes[i];
+    REFUSED(plan_with(&good, &goal, NULL, &plan));
+    plan.struct_size = sizeof plan;
+    goal.struct_size = sizes[i];
+    REFUSED(plan_with(&good, &goal, NULL, &plan));
+    goal = right[0];
+    REFUSED(hangpose_plan_path(object, supporter, NULL, &params, &good, &goal, plan_work, plan_size, NULL,
+                               waypoints, sizes[i], WAYPOINTS, &plan, &detail));
+  }
+  // Every word before the pointers in turn: a value in its range is accepted, any other is named in the
+  // detail. The budget is small, so that each search is short.
+  good.samples = 20;
+  good.has_start = good.has_workspace = 1;
+  good.start_position[1] = -0.3f;
+  for (size_t i = 0; i < 3; ++i) good.workspace_low[i] = -1, good.workspace_high[i] = 1;
+  for (size_t at = 1; at < offsetof(hangpose_motion, parts) / 4; ++at) {
+    for (int i = 0; i < 5; ++i) {
+      m = good;
+      memcpy((char *)&m + 4 * at, &words[i], 4);
+      // More nodes than there is memory for are named as memory.
+      const hangpose_status status = plan_with(&m, &goal, NULL, &plan);
+      CHECK(status >= 0 || status == HANGPOSE_ERROR_MEMORY || strncmp(detail.field, "motion.", 7) == 0 ||
+            status == HANGPOSE_ERROR_CAPACITY);
+    }
+  }
+  for (size_t at = 1; at < offsetof(hangpose_pose, contacts) / 4; ++at) {
+    for (int i = 0; i < 5; ++i) {
+      goal = right[0];
+      memcpy((char *)&goal + 4 * at, &words[i], 4);
+      CHECK(plan_with(&good, &goal, NULL, &plan) >= 0 || strncmp(detail.field, "goal.", 5) == 0);
+    }
+  }
+  goal = right[0];
+  // Overlaps: what is written, and what is read.
+  CHECK(hangpose_plan_path(object, supporter, NULL, &params, &good, &goal, plan_work, plan_size, NULL,
+                           (void *)plan_work, sizeof *waypoints, 10, &plan,
+                           &detail) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(plan_with(&good, &goal, NULL, (void *)plan_work) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(plan_with(memcpy(plan_work, &good, sizeof good), &goal, NULL, &plan) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(plan_with(&good, memcpy(plan_work, &goal, sizeof goal), NULL, &plan) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(reach(&good, (void *)plan_work, WAYPOINTS, &plan) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(reach(&good, (void *)object, WAYPOINTS, &plan) == HANGPOSE_ERROR_OVERLAP);
+  m = good, m.part_count = 1, m.parts = (void *)plan_work;
+  CHECK(plan_with(&m, &goal, NULL, &plan) == HANGPOSE_ERROR_OVERLAP);
+  CHECK(hangpose_plan_reason_string(UINT32_MAX) != NULL);
+  release(plan_work, plan_size, 0);
+  CHECK(is_unharmed());
+}
+
 static void handles(void) {
   unsigned char *memory = guarded(object_size, 0);
   hangpose_monitor monitor;
@@ -583,6 +749,7 @@ int main(void) {
   overlaps();
   requests();
   many_at_once();
+  planning();
   handles();
   other_params();
   updates();

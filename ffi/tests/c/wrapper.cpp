@@ -126,6 +126,51 @@ int main() {
   auto nothing = hangpose::predict(moved, *peg, params, hangpose::view<hangpose::pose>());
   CHECK(!nothing);
 
+  // Planning: each part of a motion reaches the call.
+  hangpose::motion motion;
+  hangpose::plan_failure reasons[3];
+  std::vector<hangpose::waypoint> waypoints(400);
+  const auto reached =
+      hangpose::predict_reachable(moved, *peg, request, params, motion, again, reasons, waypoints);
+  CHECK(reached && reached->status == HANGPOSE_OK && reached->plan.has_path == 1);
+  CHECK(reached->plan.object.size() == reached->plan.waypoint_count && reached->plan.gripper.empty());
+  CHECK(reached->prediction.poses.size() == found->poses.size() && reached->plan.clearance > 0.0f);
+  CHECK(reasons[reached->plan.pose_index].reason == HANGPOSE_PLAN_FOUND);
+  const hangpose::pose goal = again[reached->plan.pose_index];
+  const hangpose::capsule ball[1] = {
+      {{0.0f, -0.05f, 0.0f}, {0.0f, -0.05f, 0.0f}, 0.015f, {0.0f, -0.01f, 0.0f}}};
+  int asked = 0;
+  auto decide = [&asked](const hangpose::vec3 &at, const hangpose::quaternion &) {
+    ++asked;
+    return at[2] > -1.0f;
+  };
+  motion.start_at({0.0f, -0.25f, 0.1f}, {0.0f, 0.0f, 0.0f, 1.0f}).hold_with({ball, {0.0f, -0.1f, 0.0f}});
+  motion.accept_if(decide).stay_within({{{-1.0f, -1.0f, -1.0f}, {1.0f, 1.0f, 1.0f}}});
+  const auto held = hangpose::plan_path(moved, *peg, request, params, motion, goal, waypoints);
+  CHECK(held && held->status == HANGPOSE_OK && asked > 2 && !held->gripper.empty());
+  CHECK(held->object[0].position[1] == -0.25f && held->object[0].seconds == 0.0f);
+  const auto refuse = [](const hangpose::vec3 &, const hangpose::quaternion &) noexcept { return false; };
+  motion.accept_if(refuse);
+  const auto refused_path = hangpose::plan_path(moved, *peg, request, params, motion, goal, waypoints);
+  CHECK(refused_path && refused_path->status == HANGPOSE_NO_PATH && refused_path->object.empty());
+  CHECK(std::strcmp(refused_path->reason(), "the hanging pose is outside of the workspace") == 0);
+  motion.accepts = nullptr;
+  motion.stay_within({{{1.0f, -1.0f, -1.0f}, {2.0f, 1.0f, 1.0f}}});
+  const auto elsewhere =
+      hangpose::predict_reachable(moved, *peg, request, params, motion, again, {}, waypoints);
+  CHECK(elsewhere && elsewhere->status == HANGPOSE_NO_PATH && elsewhere->plan.has_path == 0);
+  const auto unequal_failures =
+      hangpose::predict_reachable(moved, *peg, request, params, motion, again,
+                                  hangpose::view<hangpose::plan_failure>(reasons, 2), waypoints);
+  CHECK(!unequal_failures && std::strcmp(unequal_failures.error().field(), "failures") == 0);
+  const auto short_path = hangpose::plan_path(moved, *peg, request, params, hangpose::motion(), goal,
+                                              hangpose::view<hangpose::waypoint>(waypoints.data(), 1));
+  CHECK(!short_path && short_path.error().status() == HANGPOSE_ERROR_CAPACITY);
+  unsigned char drop[100];
+  const auto no_memory = hangpose::plan_path(moved, *peg, request, params, hangpose::motion(), goal,
+                                             waypoints, hangpose::memory(drop, sizeof drop));
+  CHECK(!no_memory && no_memory.error().status() == HANGPOSE_ERROR_MEMORY);
+
 #if __cplusplus >= 202002L
   const std::span<const hangpose::vec3> span(points);
   CHECK(hangpose::supporter::create({span, std::span(normals)}, params));

@@ -1,12 +1,14 @@
 //! The JSON output. Lengths are in metres, frames have z up.
 
 use super::counts::{Counts, ObjectCounts, SupporterCounts};
+use super::path;
 use hangpose::Params;
 use hangpose::geometry::{self, MassProperties};
 use hangpose::hanging::contacts::{ObjectContact, SupportContact};
 use hangpose::hanging::sites::{Cost, HangingSite, SupportSite};
 use hangpose::hanging::{HangingPose, Object, Rejection, Stage, Tolerance};
 use hangpose::mechanics::{Contact, Kind, Margin, Unseen};
+use hangpose::motion::{Plan, PlanCounts};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -49,6 +51,11 @@ pub(super) struct Pose<'a> {
     cost: Option<Cost>,
     object_site: Option<Site<'a, HangingSite>>,
     supporter_site: Option<Site<'a, SupportSite>>,
+    /// Absent where no path was planned, null where none was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    path: Option<Option<path::Path>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    path_failure: Option<path::Failure>,
 }
 
 /// Turns of the object after which it is the same, so that poses that differ by one are one pose.
@@ -108,6 +115,53 @@ pub(super) struct MemoryBytes {
     pub(super) object: usize,
     pub(super) supporter: usize,
     pub(super) prediction: usize,
+}
+
+/// Output of `plan`.
+#[derive(Serialize)]
+pub(super) struct PlanDocument {
+    pub(super) schema: u32,
+    pub(super) path: Option<path::Path>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) path_failure: Option<path::Failure>,
+    pub(super) stats: PlanStats,
+}
+
+#[derive(Serialize)]
+pub(super) struct PlanStats {
+    seconds: PlanSeconds,
+    memory_bytes: PlanMemory,
+    /// Poses sampled.
+    samples: usize,
+    /// Nodes of the trees.
+    nodes: usize,
+    /// Poses tested for collision.
+    poses: usize,
+    distance_queries: u64,
+}
+
+#[derive(Default, Serialize)]
+pub(super) struct PlanSeconds {
+    pub(super) read: f64,
+    pub(super) object: f64,
+    pub(super) supporter: f64,
+    pub(super) planning: f64,
+    pub(super) total: f64,
+}
+
+#[derive(Serialize)]
+pub(super) struct PlanMemory {
+    pub(super) object: usize,
+    pub(super) supporter: usize,
+    pub(super) plan: usize,
+}
+
+impl PlanStats {
+    pub(super) fn new(seconds: PlanSeconds, memory_bytes: PlanMemory, found: &Plan) -> Self {
+        let PlanCounts { samples, nodes, poses, asked: _ } = found.counts;
+        let distance_queries = found.work.distance_queries;
+        Self { seconds, memory_bytes, samples, nodes, poses, distance_queries }
+    }
 }
 
 /// Output of `inspect` for an object.
@@ -185,7 +239,14 @@ impl<'a> Pose<'a> {
             cost: matched.map(|matched| matched.cost),
             object_site: matched.map(|matched| site(object, matched.object_site)),
             supporter_site: matched.map(|matched| site(supporter, matched.support_site)),
+            path: None,
+            path_failure: None,
         }
+    }
+
+    /// The pose with its path, or the reason why it has none.
+    pub(super) fn with_path(self, path: Option<path::Path>, path_failure: Option<path::Failure>) -> Self {
+        Self { path: Some(path), path_failure, ..self }
     }
 }
 
@@ -220,35 +281,52 @@ impl From<&Rejection> for Reason {
     }
 }
 
-/// The prediction as indented JSON, its poses and places moved by `origin`, metres, from the supporter's coordinates to
-/// those of its file.
-pub(super) fn text_in_frame(prediction: &Prediction, origin: [f64; 3]) -> String {
+/// A prediction or a plan as indented JSON, its poses and places moved by `origin`, metres, from the supporter's coordinates
+/// to those of its file.
+pub(super) fn text_in_frame(document: &impl Serialize, origin: [f64; 3]) -> String {
     if origin == [0.0; 3] {
-        return text(prediction);
+        return text(document);
     }
-    let mut document = serde_json::to_value(prediction).expect("every key is a string");
-    let add = |value: &mut Value, places: [usize; 3]| {
-        for (place, offset) in places.into_iter().zip(origin) {
-            if let Some(number) = value.get_mut(place)
-                && let Some(x) = number.as_f64()
-            {
-                *number = (x + offset).into();
-            }
-        }
-    };
-    for pose in document["poses"].as_array_mut().into_iter().flatten() {
+    let mut document = serde_json::to_value(document).expect("every key is a string");
+    for pose in document.get_mut("poses").and_then(Value::as_array_mut).into_iter().flatten() {
         for matrix in ["pose", "release_pose", "rest_pose"] {
-            add(&mut pose[matrix], [3, 7, 11]);
+            add(&mut pose[matrix], [3, 7, 11], origin);
         }
-        add(&mut pose["position"], [0, 1, 2]);
+        add(&mut pose["position"], [0, 1, 2], origin);
         for contact in pose["contacts"].as_array_mut().into_iter().flatten() {
-            add(&mut contact["position"], [0, 1, 2]);
+            add(&mut contact["position"], [0, 1, 2], origin);
         }
         if pose["supporter_site"].is_object() {
-            add(&mut pose["supporter_site"]["position"], [0, 1, 2]);
+            add(&mut pose["supporter_site"]["position"], [0, 1, 2], origin);
+        }
+        move_path(pose, origin);
+    }
+    move_path(&mut document, origin);
+    text(&document)
+}
+
+/// Moves the path of a value, or the place at which it has none.
+fn move_path(value: &mut Value, origin: [f64; 3]) {
+    for list in ["waypoints", "gripper"] {
+        let waypoints = value.pointer_mut(&format!("/path/{list}")).and_then(Value::as_array_mut);
+        for waypoint in waypoints.into_iter().flatten() {
+            add(&mut waypoint["position"], [0, 1, 2], origin);
         }
     }
-    text(&document)
+    if let Some(at) = value.pointer_mut("/path_failure/at") {
+        add(at, [0, 1, 2], origin);
+    }
+}
+
+/// Adds an offset to the numbers at three places of a list.
+fn add(value: &mut Value, places: [usize; 3], origin: [f64; 3]) {
+    for (place, offset) in places.into_iter().zip(origin) {
+        if let Some(number) = value.get_mut(place)
+            && let Some(x) = number.as_f64()
+        {
+            *number = (x + offset).into();
+        }
+    }
 }
 
 /// The value as indented JSON with a trailing line break.

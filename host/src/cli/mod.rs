@@ -1,16 +1,24 @@
 //! The command line of `hangpose`, one file per subcommand.
 
 mod counts;
+mod gripper;
 mod input;
 pub(crate) mod inspect;
 mod json;
+mod motion;
 mod output;
 mod params;
+mod path;
+pub(crate) mod plan;
+mod planned;
+mod pose_file;
 pub(crate) mod predict;
 mod progress;
 mod recording;
 mod request;
 pub(crate) mod scan;
+mod scene;
+mod source;
 mod terminal;
 
 pub(crate) use terminal::say;
@@ -18,8 +26,10 @@ pub(crate) use terminal::say;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use hangpose::geometry::Aabb;
 use hangpose::hanging::MAX_HUNG;
+use motion::MotionArguments;
 use recording::{DepthArguments, RecordingArguments};
 use request::RequestArguments;
+use scene::SceneArguments;
 use std::path::PathBuf;
 
 /// Predict how to hang an object on a supporter, without training data and without a GPU.
@@ -32,6 +42,9 @@ pub(crate) struct Arguments {
 
 const EXAMPLE: &str = "Example: hangpose predict --object samples/mug.obj --supporter samples/hook.ply";
 
+const USAGE_OF_PLAN: &str = "hangpose plan --object <FILE> --supporter <FILE> --pose <FILE> [OPTIONS]
+       hangpose plan --object-depth <PATTERN> --supporter-depth <PATTERN> --camera <FILE> --pose <FILE> [OPTIONS]";
+
 const USAGE_OF_PREDICT: &str = "hangpose predict --object <FILE> --supporter <FILE> [OPTIONS]
        hangpose predict --object-depth <PATTERN> --supporter-depth <PATTERN> --camera <FILE> [OPTIONS]";
 
@@ -42,9 +55,18 @@ pub(crate) enum Command {
     /// A pose maps object coordinates to supporter coordinates. Both frames are in metres with z up, after the options
     /// for scale and up axis are applied.
     ///
-    /// Exit status: 0 poses were found, 3 nothing hangs (the JSON gives the reason), 1 bad input, 2 bad usage.
+    /// Exit status: 0 poses were found, and with --plan one of them has a path; 3 nothing hangs, or no pose has a path (the
+    /// JSON gives the reason); 1 bad input, 2 bad usage.
     #[command(override_usage = USAGE_OF_PREDICT)]
     Predict(Box<PredictArguments>),
+    /// Plan a path without collisions to a pose in which the object hangs, or away from it.
+    ///
+    /// The path leads from the start over the release pose to the rest pose. Its poses map object coordinates to supporter
+    /// coordinates. Both frames are in metres with z up, after the options for scale and up axis are applied.
+    ///
+    /// Exit status: 0 a path was found, 3 there is no path (the JSON gives the reason), 1 bad input, 2 bad usage.
+    #[command(override_usage = USAGE_OF_PLAN)]
+    Plan(Box<PlanArguments>),
     /// Show the analysis of one file: size, centre of mass, and contact candidates or hanging sites.
     ///
     /// Exit status: 0 the file was read, even if it has no candidates, 1 bad input, 2 bad usage.
@@ -67,6 +89,37 @@ pub(crate) struct PredictArguments {
     cloud: CloudArguments,
     #[command(flatten, next_help_heading = "How and where it hangs")]
     request: RequestArguments,
+    /// Plan a path without collisions to one pose after another, best first, until one has a path.
+    #[arg(long, conflicts_with = "count", help_heading = "The path to it")]
+    plan: bool,
+    #[command(flatten, next_help_heading = "The path to it")]
+    motion: MotionArguments,
+    #[command(flatten, next_help_heading = "Method")]
+    method: MethodArguments,
+    #[command(flatten, next_help_heading = "Depth images in place of --object or --supporter")]
+    recording: RecordingArguments,
+}
+
+#[derive(Args)]
+pub(crate) struct PlanArguments {
+    #[command(flatten, next_help_heading = "Object and supporter")]
+    files: FileArguments,
+    /// The pose in which the object hangs: JSON with "position" and "quaternion_xyzw" of the release pose in the supporter
+    /// frame and, if it is known, "rest_pose"; or a result of `predict --json`.
+    #[arg(long, value_name = "FILE", help_heading = "The pose")]
+    pose: PathBuf,
+    /// Rank of the pose, if the file has several.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..), help_heading = "The pose")]
+    rank: u32,
+    #[command(flatten, next_help_heading = "The path to it")]
+    motion: MotionArguments,
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// File for the path as JSON; - prints the JSON to standard output instead of the text.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    #[command(flatten, next_help_heading = "Points of the supporter")]
+    cloud: CloudArguments,
     #[command(flatten, next_help_heading = "Method")]
     method: MethodArguments,
     #[command(flatten, next_help_heading = "Depth images in place of --object or --supporter")]

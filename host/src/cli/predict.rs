@@ -1,22 +1,25 @@
 //! `hangpose predict`.
 
-use super::input::{self, Placement};
+use super::input;
 use super::inspect::closedness;
-use super::json::{self, MemoryBytes, PerPart, Pose, Prediction, Reason, Seconds, Stats};
+use super::json::{self, MemoryBytes, PerPart, Pose, Reason, Seconds, Stats};
+use super::motion::Way;
 use super::output::Output;
-use super::recording::Recording;
+use super::path::{self, MAX_WAYPOINTS};
+use super::planned::Planned;
+use super::source::Source;
 use super::terminal::{self, say};
-use super::{CloudArguments, FileArguments, PredictArguments, progress};
+use super::{PredictArguments, progress};
 use anyhow::{Context, Result, ensure};
-use hangpose::files::{self, CloudFile, MeshFile, SupporterFile};
 use hangpose::geometry::{Aabb, Cloud, Mesh, Point};
 use hangpose::hanging::sites::{Cost, SiteMatch};
 use hangpose::hanging::{
-    self, HangingPose, Object, Rejection, Request, Rest, Stage, Supporter, predict, predict_bytes,
-    predict_many,
+    self, HangingPose, Object, Prediction, Rejection, Request, Rest, Stage, Supporter, predict,
+    predict_bytes, predict_many,
 };
 use hangpose::mechanics::Unseen;
 use hangpose::memory::Limits;
+use hangpose::motion::{Task, Waypoint, predict_reachable, reachable_bytes};
 use hangpose::{CentreOfMass, Monitor, Params};
 use std::path::Path;
 use std::process::ExitCode;
@@ -34,28 +37,44 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
         params.validate().context("--com")?;
     }
     arguments.request.check(&params)?;
+    if arguments.plan {
+        ensure!(
+            params.voxels > 0,
+            "--plan: without a distance field nothing can be planned; pass --profile default, or voxels in the --params file"
+        );
+    } else {
+        arguments.motion.check_unused()?;
+    }
     let result = &arguments.result;
     let count = result.count as usize;
     ensure!(
         params.settle || count == 1,
         "--count: without their release nothing keeps the copies apart; pass --profile default, or settle = true in the --params file"
     );
-    let (object_source, supporter_source) = (arguments.object()?, arguments.supporter()?);
+    let (object_source, supporter_source) = (
+        Source::of_object(&arguments.files, &arguments.recording)?,
+        Source::of_supporter(&arguments.files, &arguments.recording)?,
+    );
     let inputs: Vec<&Path> = object_source
         .files()
         .into_iter()
         .chain(supporter_source.files())
         .chain(arguments.method.params.as_deref())
         .chain(arguments.request.file())
+        .chain(arguments.motion.files())
         .collect();
-    let output = result.json.as_deref().map(|path| Output::prepare(path, &inputs)).transpose()?;
-    let is_table_shown = !matches!(output, Some(Output::Standard));
+    let prepare = |path: Option<&Path>| path.map(|path| Output::prepare(path, &inputs)).transpose();
+    let (output, path_output) = (prepare(result.json.as_deref())?, prepare(arguments.motion.path())?);
+    let is_table_shown =
+        ![&output, &path_output].into_iter().any(|output| matches!(output, Some(Output::Standard)));
 
     let mesh = object_source.object(&arguments.files)?;
     let points = supporter_source.supporter(&arguments.files, &arguments.cloud, params.seed)?;
     let cloud = input::seen(&points, &arguments.cloud)?;
     let wishes = arguments.request.read(&arguments.files, &points)?;
     let request = &wishes.request()?;
+    let way = arguments.plan.then(|| arguments.motion.read(points.origin)).transpose()?;
+    let motion = way.as_ref().map(Way::motion).transpose()?;
     let (cloud, params) = (&cloud, &params);
     let mut seconds = Seconds { read: start.elapsed().as_secs_f64(), ..Seconds::default() };
 
@@ -64,7 +83,10 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     let memory_bytes = MemoryBytes {
         object: Object::bytes(&limits),
         supporter: Supporter::bytes(&limits),
-        prediction: predict_bytes(&limits),
+        prediction: match &motion {
+            Some(motion) => reachable_bytes(&limits, request.scene.len(), motion.nodes),
+            None => predict_bytes(&limits),
+        },
     };
     let prediction_memory = &mut vec![0; memory_bytes.prediction];
     let object_memory = &mut vec![0; memory_bytes.object];
@@ -87,7 +109,10 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
         let (object, supporter) = ((object.0?, object.1), (supporter.0?, supporter.1));
         let (found, matching) = timed(|| {
             let models = (&object.0, &supporter.0);
-            if count > 1 {
+            if let Some(motion) = motion {
+                let task = Task { object: models.0, supporter: models.1, request, params, motion };
+                Found::reachable(&task, result.top as usize, prediction_memory, monitors[2])
+            } else if count > 1 {
                 Found::of_copies(models, count, request, params, prediction_memory, monitors[2])
             } else {
                 Found::of_one(models, result.top as usize, request, params, prediction_memory, monitors[2])
@@ -100,15 +125,29 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
 
     input::tell_of_cloud(supporter_source.name(), &supporter, cloud);
     warn_of_centre_of_mass(mesh, arguments.files.com, object_source.name());
-    let text = table(&found, count, (mesh, cloud), &object, &supporter);
+    let mut text = table(&found, count, (mesh, cloud), &object, &supporter);
+    let planned = found.planned.as_ref();
+    if let Some(planned) = planned {
+        text += &planned.table(&object.centre_of_mass(), points.origin);
+    }
+    if let Some(path_output) = path_output {
+        match planned.and_then(Planned::path) {
+            Some(path) => path_output.write(path::csv(&path, points.origin))?,
+            None => say("note", "--path: no file was written, because there is no path"),
+        }
+    }
     if let Some(output) = output {
-        let document = Prediction {
+        let document = json::Prediction {
             schema: json::SCHEMA,
             count,
             poses: (1..)
                 .zip(&found.poses)
                 .map(|(rank, pose)| {
-                    Pose::new(rank, pose, object.places().sites(), supporter.places().sites())
+                    let pose = Pose::new(rank, pose, object.places().sites(), supporter.places().sites());
+                    match planned {
+                        Some(planned) => planned.add_to(pose, rank - 1, points.origin),
+                        None => pose,
+                    }
                 })
                 .collect(),
             symmetries: json::symmetries(&object),
@@ -133,7 +172,8 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     if is_table_shown {
         terminal::print(&text)?;
     }
-    Ok(if found.poses.is_empty() { ExitCode::from(REJECTED) } else { ExitCode::SUCCESS })
+    let is_hung = !found.poses.is_empty() && planned.is_none_or(|planned| planned.path().is_some());
+    Ok(if is_hung { ExitCode::SUCCESS } else { ExitCode::from(REJECTED) })
 }
 
 /// What was found for one object, or for several copies of it at once.
@@ -144,9 +184,25 @@ struct Found {
     rejection: Option<Rejection>,
     /// How much was left after each step of the prediction; `None` for copies, which take several predictions.
     counts: Option<hanging::Counts>,
+    /// Which of the poses can be reached, if that was asked for.
+    planned: Option<Planned>,
 }
 
 impl Found {
+    /// Up to `top` poses of one object, and a path to the best that has one.
+    fn reachable(task: &Task, top: usize, memory: &mut [u8], monitor: &Monitor) -> Result<Self> {
+        let mut poses = vec![HangingPose::default(); top];
+        let (mut failures, mut waypoints) = (vec![None; top], vec![Waypoint::default(); MAX_WAYPOINTS]);
+        let anywhere = &mut |_: &_| true;
+        let found =
+            predict_reachable(task, &mut poses, &mut failures, &mut waypoints, anywhere, memory, monitor)?;
+        let Prediction { rejection, counts, poses: best, .. } = found.prediction;
+        let left = best.len();
+        let planned = Planned::new(failures, &found);
+        poses.truncate(left);
+        Ok(Self { poses, rejection, counts: Some(counts), planned: Some(planned) })
+    }
+
     /// Up to `top` poses of one object.
     fn of_one(
         (object, supporter): (&Object, &Supporter),
@@ -160,7 +216,7 @@ impl Found {
         let found = predict(object, supporter, request, params, &mut poses, memory, monitor)?;
         let (rejection, counts, left) = (found.rejection, Some(found.counts), found.poses.len());
         poses.truncate(left);
-        Ok(Self { poses, rejection, counts })
+        Ok(Self { poses, rejection, counts, planned: None })
     }
 
     /// One pose for each of `count` copies. If there is no room for one, there is none for those after it.
@@ -175,78 +231,12 @@ impl Found {
         let mut poses = vec![None; count];
         let copies = vec![object; count];
         let found = predict_many(&copies, supporter, request, params, &mut poses, memory, monitor)?;
-        Ok(Self { poses: poses.into_iter().flatten().collect(), rejection: found.rejection, counts: None })
-    }
-}
-
-/// What an object or a supporter is read from.
-enum Source<'a> {
-    File(&'a Path),
-    Images(Recording<'a>),
-}
-
-impl PredictArguments {
-    fn object(&self) -> Result<Source<'_>> {
-        Source::new(self.files.object.as_deref(), self.recording.object()?)
-    }
-
-    fn supporter(&self) -> Result<Source<'_>> {
-        Source::new(self.files.supporter.as_deref(), self.recording.supporter()?)
-    }
-}
-
-impl<'a> Source<'a> {
-    fn new(file: Option<&'a Path>, images: Option<Recording<'a>>) -> Result<Self> {
-        let images = images.map(Self::Images);
-        images.or(file.map(Self::File)).context("pass a file or depth images")
-    }
-
-    /// What messages call it.
-    fn name(&self) -> &Path {
-        match self {
-            Self::File(path) => path,
-            Self::Images(recording) => Path::new(recording.name),
-        }
-    }
-
-    /// The files that are read, as far as the options name them.
-    fn files(&self) -> Vec<&Path> {
-        match self {
-            Self::File(path) => vec![path],
-            Self::Images(recording) => recording.files().into(),
-        }
-    }
-
-    /// The object in metres with z up.
-    fn object(&self, arguments: &FileArguments) -> Result<MeshFile> {
-        let (scale, up) = (arguments.object_scale, arguments.object_up);
-        let (file, placement) = match self {
-            Self::File(path) => {
-                (files::read_mesh(path)?, Placement { scale, up, scale_option: Some("--object-scale") })
-            }
-            Self::Images(images) => (images.object()?, Placement { scale: 1.0, up, scale_option: None }),
-        };
-        let mut mesh = input::object(self.name(), file, &placement)?.shape;
-        if !arguments.object_viewpoint.is_empty() {
-            mesh.viewpoints = arguments.object_viewpoint.iter().map(|view| view.map(|x| x as f32)).collect();
-            mesh.mesh().context("--object-viewpoint")?;
-        }
-        Ok(mesh)
-    }
-
-    /// The supporter in metres with z up.
-    fn supporter(&self, arguments: &FileArguments, points: &CloudArguments, seed: u64) -> Result<CloudFile> {
-        let (scale, up) = (arguments.supporter_scale, arguments.supporter_up);
-        let (file, placement) = match self {
-            Self::File(path) => (
-                files::read_supporter(path)?,
-                Placement { scale, up, scale_option: Some("--supporter-scale") },
-            ),
-            Self::Images(images) => {
-                (SupporterFile::Cloud(images.supporter()?), Placement { scale: 1.0, up, scale_option: None })
-            }
-        };
-        Ok(input::supporter(self.name(), file, &placement, points, seed)?.shape)
+        Ok(Self {
+            poses: poses.into_iter().flatten().collect(),
+            rejection: found.rejection,
+            counts: None,
+            planned: None,
+        })
     }
 }
 

@@ -1,15 +1,15 @@
 //! The options that say how and where the object shall hang, and what it must not touch.
 
-use super::input::{self, Placement};
+use super::scene::SceneArguments;
 use super::{FileArguments, parse_numbers};
 use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
-use hangpose::files::{self, CloudFile, SupporterFile};
+use hangpose::files::CloudFile;
 use hangpose::hanging::{Approach, Distance, Region, Request, RequestError};
 use hangpose::mechanics::{Kind, Kinds};
 use hangpose::{Candidates, Params};
 use std::f32::consts::PI;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// How and where the object shall hang.
 #[derive(Args)]
@@ -41,10 +41,8 @@ pub(super) struct RequestArguments {
     /// Length of that line, metres.
     #[arg(long, value_name = "METRES", default_value_t = 0.1, value_parser = parse_length, allow_hyphen_values = true, requires = "approach")]
     approach_length: f32,
-    /// Things near the supporter, which the object does not touch and never hangs on: a point cloud or a mesh in the units
-    /// and axes of the supporter's file.
-    #[arg(long, value_name = "FILE")]
-    scene: Option<PathBuf>,
+    #[command(flatten)]
+    scene: SceneArguments,
     /// How much two poses of a kind differ at least: metres between the centres of mass, or degrees of rotation.
     #[arg(long, value_name = "METRES,DEGREES", value_parser = parse_distance, allow_hyphen_values = true)]
     distinct: Option<Distance>,
@@ -138,7 +136,7 @@ impl RequestArguments {
             ("--by", self.by.is_some(), is_placed),
             ("--by-box", self.by_box.is_some(), is_placed),
             ("--approach", self.approach.is_some(), params.settle),
-            ("--scene", self.scene.is_some(), params.settle),
+            ("--scene", self.scene.file().is_some(), params.settle),
             ("--distinct", self.distinct.is_some(), params.settle),
         ] {
             ensure!(
@@ -151,7 +149,7 @@ impl RequestArguments {
 
     /// The file that is read, if any.
     pub(super) fn file(&self) -> Option<&Path> {
-        self.scene.as_deref()
+        self.scene.file()
     }
 
     /// Reads the scene, and moves what is in the supporter frame to the coordinates of its cloud.
@@ -173,21 +171,9 @@ impl RequestArguments {
                 angle: radians(self.approach_angle),
                 length: self.approach_length,
             }),
-            scene: self.scene(files, supporter)?,
+            scene: self.scene.read(files, supporter)?,
             distinct: self.distinct.unwrap_or(Request::ANY.distinct),
         })
-    }
-
-    fn scene(&self, files: &FileArguments, supporter: &CloudFile) -> Result<Vec<[f32; 3]>> {
-        let Some(path) = &self.scene else { return Ok(Vec::new()) };
-        let placement =
-            Placement { scale: files.supporter_scale, up: files.supporter_up, scale_option: None };
-        let scene = match files::read_supporter(path)? {
-            SupporterFile::Mesh(mesh) => input::scene_mesh(path, mesh, &placement)?,
-            SupporterFile::Cloud(cloud) => input::placed_cloud(path, cloud, &placement)?,
-        };
-        let shift = [0, 1, 2].map(|i| (scene.origin[i] - supporter.origin[i]) as f32);
-        Ok(scene.points.iter().map(|point| [0, 1, 2].map(|i| point[i] + shift[i])).collect())
     }
 }
 

@@ -8,6 +8,7 @@ mod json;
 mod notes;
 mod output;
 mod placement;
+mod planning;
 mod shapes;
 mod usage;
 

@@ -38,7 +38,7 @@ fn help_lists_every_option_and_status() {
     let run = run!("--help");
     assert_eq!(run.status, Some(0));
     assert!(
-        ["predict", "inspect", "scan", "Example: hangpose predict"]
+        ["predict", "plan", "inspect", "scan", "Example: hangpose predict"]
             .iter()
             .all(|part| run.stdout.contains(part))
     );
@@ -59,9 +59,20 @@ fn help_lists_every_option_and_status() {
         "params",
         "threads",
         "viewpoint",
+        "start",
+        "gripper",
+        "workspace",
+        "path",
     ] {
         assert!(help.contains(&format!("--{option} <")), "{option}");
     }
+    assert!(help.contains("--plan\n") && help.contains("--take-off"));
+    let help_of_plan = run!("plan", "--help").stdout;
+    for option in ["pose", "rank", "start", "gripper", "workspace", "plan-clearance", "scene", "path", "json"]
+    {
+        assert!(help_of_plan.contains(&format!("--{option} <")), "{option}");
+    }
+    assert!(help_of_plan.contains("Exit status: 0"));
     let help_of_scan = run!("scan", "--help").stdout;
     for option in ["depth", "camera", "poses", "mask", "label", "voxel", "crop", "depth-scale", "viewpoints"]
     {

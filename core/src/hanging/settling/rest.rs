@@ -73,6 +73,24 @@ impl Rest {
         }
     }
 
+    /// A rest pose that another program gives, for a path to it: nothing else is known of it. All numbers are zero, and the
+    /// kind is [`Kind::Balanced`], which says least.
+    pub fn at(pose: Pose) -> Self {
+        Self {
+            pose,
+            kind: Kind::Balanced,
+            sinking: 0.0,
+            clearance: 0.0,
+            tolerance: Tolerance::default(),
+            probability: 0.0,
+            robustness: 0.0,
+            unseen: Unseen::default(),
+            margin: Margin::default(),
+            contacts: [Contact::default(); MAX_CONTACTS],
+            contact_count: 0,
+        }
+    }
+
     /// Whether nothing but what nobody saw keeps the pose from being certain.
     pub(super) fn is_firm(&self) -> bool {
         probability::is_firm(self.probability, &self.unseen)
