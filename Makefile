@@ -8,7 +8,7 @@ help:
 	@echo "make peer     compare time and poses with another implementation: PEER=peer.py [MESHES=folder]"
 	@echo "make tables   simulate 600 pairs in two engines and write docs/RESULTS.md [MESHES=folder adds real meshes]"
 	@echo "make meant    measure kinds, turned frames, mug trees, tolerances and probabilities [MESHES=folder adds real meshes]"
-	@echo "make reach    plan paths in several scenes, replay them in Bullet and write the section Paths of docs/RESULTS.md"
+	@echo "make reach    plan paths in several scenes, replay them in Bullet and write two sections of docs/RESULTS.md"
 	@echo "make calibrate  refit the constants of docs/PROBABILITY.md"
 	@echo "make lib      build libhangpose.a and libhangpose.so for C and C++ in build/link"
 	@echo "make install  install the libraries and headers: [PREFIX=/usr/local] [DESTDIR=...]"
@@ -67,8 +67,8 @@ meant: setup
 
 reach: setup
 	cargo run --release -p host-tests --bin reach -- --peer --out docs/RESULTS.md
-	@printf '\n### With a gripper\n\n' >> docs/RESULTS.md
-	cargo run --release -p host-tests --bin reach -- --gripper --enclosed 0 --json build/reach_gripper.jsonl >> docs/RESULTS.md
+	cargo run --release -p host-tests --bin reach -- --gripper --enclosed 0 --json build/reach_gripper.jsonl \
+		--out docs/RESULTS.md --section "Paths with a gripper"
 
 peer_python = build/peer/bin/python
 

@@ -49,13 +49,14 @@ struct Arguments {
     /// File for the rows, one line of JSON each.
     #[arg(long, value_name = "FILE", default_value = "build/reach.jsonl")]
     json: PathBuf,
-    /// File whose section "Paths" is replaced by the tables, or to which it is added. By default they go to the console.
+    /// File of which a section is replaced by the tables, or to which it is added. By default they go to the console.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// Heading of that section.
+    #[arg(long, default_value = "Paths")]
+    section: String,
 }
 
-/// The heading of the section that the tables replace.
-const SECTION: &str = "## Paths";
 /// Draws of shapes for each pair that encloses, of which some do not fit.
 const DRAWS: usize = 10;
 
@@ -111,7 +112,7 @@ fn main() -> Result<()> {
         report::tables(&pairs, &closed, &opened)
     );
     match &arguments.out {
-        Some(out) => replace_section(out, &text),
+        Some(out) => replace_section(out, &format!("## {}", arguments.section), &text),
         None => {
             print!("{text}");
             Ok(())
@@ -120,17 +121,16 @@ fn main() -> Result<()> {
 }
 
 /// Replaces the section of a file by this text, or adds it at the end.
-fn replace_section(out: &Path, text: &str) -> Result<()> {
+fn replace_section(out: &Path, heading: &str, text: &str) -> Result<()> {
     let whole = std::fs::read_to_string(out).with_context(|| out.display().to_string())?;
-    let is_start = |line: &str| line.trim_end() == SECTION;
     let mut lines: Vec<&str> = whole.lines().collect();
-    let start = lines.iter().position(|line| is_start(line)).unwrap_or(lines.len());
+    let start = lines.iter().position(|line| line.trim_end() == heading).unwrap_or(lines.len());
     let after = lines.get(start + 1..).unwrap_or_default();
     let end = after.iter().position(|line| line.starts_with("## ")).map_or(lines.len(), |k| start + 1 + k);
     let tail = lines.split_off(end);
     lines.truncate(start);
     let [before, after] = [lines, tail].map(|lines| lines.join("\n"));
     let before = before.trim_end();
-    let joined = format!("{before}\n\n{SECTION}\n\n{}\n\n{after}", text.trim_end());
+    let joined = format!("{before}\n\n{heading}\n\n{}\n\n{after}", text.trim_end());
     std::fs::write(out, joined.trim_end().to_owned() + "\n").with_context(|| out.display().to_string())
 }

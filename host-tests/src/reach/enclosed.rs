@@ -83,7 +83,7 @@ pub fn enclosed(enclosure: Enclosure, seed: u64, is_closed: bool) -> Option<Encl
     let mut world = Bullet::default().world(&scene);
     world.release(&pose.cast());
     let is_free = world.penetration() <= 0.0;
-    is_free.then(|| Enclosed { object_kind: kind.name, object: object.solid, supporter, pose, out, line })
+    is_free.then_some(Enclosed { object_kind: kind.name, object: object.solid, supporter, pose, out, line })
 }
 
 type Made = Option<(Solid, Pose, V, Vec<V>)>;
