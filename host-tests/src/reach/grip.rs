@@ -27,6 +27,8 @@ const LONG: f32 = 0.1;
 const OPENS: f32 = 0.015;
 /// How far the gripper leaves downwards, m.
 const RETREAT: f32 = 0.08;
+/// Free distance of the gripper from what stands still, m.
+const ROOM: f32 = 0.004;
 /// Number of directions of the fingers that are tried.
 const TURNS: u32 = 12;
 
@@ -38,8 +40,8 @@ pub struct Grip {
 }
 
 impl Grip {
-    /// A gripper that holds the lower end of an object at `rest` from below, where that is least wide, and is free of what stands
-    /// still while it holds and after it has opened; `None` if there is none.
+    /// A gripper that holds the lower end of an object at `rest` from below, where that is least wide, and is 4 mm off what
+    /// stands still while it holds and after it has opened; `None` if there is none.
     pub fn of(object: &Solid, rest: &Pose, obstacles: &Solid) -> Option<Self> {
         let points: Vec<Point> =
             samples(object, 0.004, None).iter().map(|&point| rest * Point::from(point)).collect();
@@ -65,7 +67,9 @@ impl Grip {
         let grips = widths.into_iter().map(|(width, aside, middle)| Self::at(width, aside, middle, rest));
         grips.into_iter().find(|grip| {
             [0.0, 1.0].into_iter().all(|open| {
-                let hand = replay::fingers(&grip.gripper(), open);
+                let wider = |part: &Capsule| Capsule { radius: part.radius + ROOM, ..*part };
+                let parts: Vec<Capsule> = grip.parts.iter().map(wider).collect();
+                let hand = replay::fingers(&Gripper { parts: &parts, retreat: grip.retreat }, open);
                 let scene = replay::hand(&hand, obstacles);
                 let mut world = Bullet::default().world(&scene);
                 world.release(&rest.cast());
