@@ -13,8 +13,9 @@ const STEP: f32 = 0.001;
 /// Distance from the mesh below which a point of the supporter touches it, metres.
 const LEAST_DISTANCE: f32 = 0.00005;
 
-/// The least distance from obstacles on a route, metres, a lower bound capped at [`MAX_CLEARANCE`]; or the first leg on which the
-/// supporter passes through the mesh of the object.
+/// The least distance from obstacles at the poses of a route that are tested, metres, capped at [`MAX_CLEARANCE`]; or the first leg
+/// on which the supporter passes through the mesh of the object. From one of these poses to the next no point of the object
+/// moves farther than [`STEP`], or than a quarter of the distance there.
 pub(super) fn certify(
     space: &mut Space,
     route: &Route,
@@ -25,14 +26,11 @@ pub(super) fn certify(
     for index in 0..route.legs() {
         let (from, leg) = (route.places()[index], route.leg(index));
         let travel = leg.travel(moving.reach).max(1e-9);
-        let (mut share, mut before) = (0.0, None::<(f32, f32)>);
+        let mut share = 0.0;
         loop {
             let place = from.after(&leg, share);
             let distance = space.nearest(&place, MAX_CLEARANCE, meter)?.distance;
-            // Between two poses the distance is least where what is left of both meets.
-            let step = before.map_or(0.0, |(share_before, _)| (share - share_before) * travel);
-            let between = before.map_or(distance, |(_, other)| 0.5 * (distance + other - step));
-            clearance = clearance.min(between).min(distance);
+            clearance = clearance.min(distance);
             if distance < NEAR
                 && let Some(body) = &moving.body
                 && !is_off_surface(
@@ -47,7 +45,6 @@ pub(super) fn certify(
             if share >= 1.0 {
                 break;
             }
-            before = Some((share, distance));
             share = (share + (0.25 * distance).max(STEP) / travel).min(1.0);
         }
     }

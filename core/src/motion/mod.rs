@@ -4,6 +4,7 @@
 //! [`Task`] says what moves among what; the answer is a [`Path`] or a [`PlanFailure`].
 
 mod certify;
+mod enclosed;
 mod end;
 mod error;
 mod failure;
@@ -20,6 +21,8 @@ mod shorten;
 mod slide;
 mod space;
 mod task;
+#[cfg(test)]
+mod tests;
 mod timing;
 mod tree;
 mod written;

@@ -32,8 +32,9 @@ pub struct Path<'w> {
     /// Poses of the opened gripper relative to the supporter: after the object rests, away from it; to take the object off,
     /// towards it and before the object moves. Empty without a gripper.
     pub gripper: &'w [Waypoint],
-    /// Least distance of the object, or of the gripper that holds it, from everything else on the way between start and
-    /// release pose, metres: a lower bound, capped at [`MAX_CLEARANCE`].
+    /// Least distance of the object, or of the gripper that holds it, from everything else between start and release pose,
+    /// metres, capped at [`MAX_CLEARANCE`]. It is tested at steps in which no point moves farther than a millimetre, or than a
+    /// quarter of the distance where that is more.
     pub clearance: f32,
 }
 

@@ -1,6 +1,7 @@
 //! Plans a path for one pose: of the object to it, and of the gripper away.
 
 use super::certify::certify;
+use super::enclosed;
 use super::end::End;
 use super::error::PlanError;
 use super::failure::PlanFailure;
@@ -27,6 +28,10 @@ use crate::random::Random;
 /// Distance from obstacles, metres, below which a release pose or a start is in collision: less than the least gap of a release
 /// pose that is predicted, 0.1 mm.
 const LEAST_DISTANCE: f32 = 0.00005;
+/// Samples after which a proof is sought that there is no way.
+const SAMPLES_BEFORE_PROOF: usize = 100;
+/// Distance from obstacles, metres, that is kept if no way is found with more: that of a release pose.
+const NARROW: f32 = 0.0005;
 /// Share of the distance at the release pose and at the start that is kept on the way.
 const KEPT: f32 = 0.5;
 /// What a radian counts against a metre, as a share of the reach of what moves: the radius of gyration of a ball is 0.63 of
@@ -40,6 +45,7 @@ pub const fn plan_bytes(limits: &Limits, scene: usize, nodes: usize) -> usize {
     model_bytes(
         Obstacles::bytes(limits.points, scene)
             .saturating_add(Space::bytes(limits.points))
+            .saturating_add(enclosed::bytes(limits.points))
             .saturating_add(Room::bytes(nodes)),
     )
 }
@@ -149,8 +155,13 @@ impl<'a> Planner<'_, 'a, '_> {
         let workspace = motion.workspace.map(|aabb| Workspace::new(aabb, self.task.object.surface().aabb()));
         let mut space = Space::of_object(moving, obstacles, workspace, &mut arena)?;
 
-        let clearance =
-            self.way_of_object(&mut space, &region, (&release, start, &resting), &mut room, permit)?;
+        let clearance = self.way_of_object(
+            &mut space,
+            &region,
+            (&release, start, &resting),
+            (&mut room, &mut arena),
+            permit,
+        )?;
         let mut written = Written { waypoints, count: 0, step: motion.step };
         written.route(&room.short, &body.centre);
         let release_index = written.count - 1;
@@ -176,7 +187,7 @@ impl<'a> Planner<'_, 'a, '_> {
         space: &mut Space<'a>,
         region: &Aabb,
         (release, start, resting): (&Placement, Option<Placement>, &Placement),
-        room: &mut Room,
+        (room, scratch): (&mut Room, &mut Arena),
         permit: &mut Permit,
     ) -> Result<f32, End> {
         let motion = &self.task.motion;
@@ -205,7 +216,7 @@ impl<'a> Planner<'_, 'a, '_> {
         }
         room.trees[0].add(*release, None, MAX_CLEARANCE);
         let required = (KEPT * kept).min(motion.clearance);
-        self.search(space, required, (region, release), room, permit)
+        self.search(space, required, (region, release), (room, Some(scratch)), permit)
     }
 
     /// Adds places outside of a box as starts.
@@ -236,10 +247,10 @@ impl<'a> Planner<'_, 'a, '_> {
         space: &mut Space,
         required: f32,
         (region, goal): (&Aabb, &Placement),
-        room: &mut Room,
+        (room, scratch): (&mut Room, Option<&mut Arena>),
         permit: &mut Permit,
     ) -> Result<f32, End> {
-        let motion = &self.task.motion;
+        let (motion, nodes) = (&self.task.motion, self.counts.nodes);
         let Room { trees, found, short } = room;
         let mut search = Search {
             space,
@@ -252,16 +263,31 @@ impl<'a> Planner<'_, 'a, '_> {
             counts: self.counts,
             step: motion.step,
         };
+        let (mut scratch, mut left) = (scratch, motion.samples);
         loop {
-            let outcome = search.run(motion.samples, found, permit, self.meter);
-            self.counts = search.counts;
-            self.counts.nodes += search.trees.iter().map(|tree| tree.nodes().len()).sum::<usize>();
+            // The proof that there is no way costs as much as many samples, and most ways are found with few.
+            let samples = if scratch.is_some() { left.min(SAMPLES_BEFORE_PROOF) } else { left };
+            let before = search.counts.samples;
+            let outcome = search.run(samples, found, permit, self.meter);
+            left -= search.counts.samples - before;
+            self.counts.samples = search.counts.samples;
+            self.counts.nodes = nodes + search.trees.iter().map(|tree| tree.nodes().len()).sum::<usize>();
             match outcome? {
                 Outcome::Found => {}
-                Outcome::UsedUp => {
-                    return Err(PlanFailure::BudgetUsedUp { samples: search.counts.samples }.into());
-                }
                 Outcome::Full => return Err(PlanFailure::TreesFull { nodes: motion.nodes }.into()),
+                Outcome::UsedUp => {
+                    if let Some(scratch) = scratch.take()
+                        && let Some(resolution) = enclosed::link(search.space, goal, scratch, self.meter)?
+                    {
+                        return Err(PlanFailure::Enclosed { resolution }.into());
+                    }
+                    // A narrow place on the way has less room than the ends have.
+                    search.required = search.required.min(NARROW);
+                    if left == 0 {
+                        return Err(PlanFailure::BudgetUsedUp { samples: motion.samples }.into());
+                    }
+                    continue;
+                }
             }
             short.copy_from(found);
             shorten(search.space, short, (required, motion.clearance), &mut search.random, self.meter)?;
@@ -316,7 +342,7 @@ impl<'a> Planner<'_, 'a, '_> {
             &mut space,
             required,
             (&region, &at),
-            room,
+            (&mut *room, None),
             &mut Permit::new(anywhere, moving.centre),
         ) {
             Err(End::Failure(PlanFailure::BudgetUsedUp { .. } | PlanFailure::TreesFull { .. })) => {

@@ -56,10 +56,14 @@ const MAX_BARS: usize = 4;
 
 /// Share of the samples that are starts.
 const OF_STARTS: f32 = 0.25;
+/// Share of these whose rotation is that of the start: on the way out any may be the one that passes.
+const AS_IT_STARTS: f32 = 0.5;
 /// Share of the other samples whose position is near the goal.
 const NEAR_GOAL: f32 = 0.5;
 /// Shares of the samples with the rotation of the goal, and with one close to it.
 const ROTATED_AS_GOAL: [f32; 2] = [0.4, 0.3];
+/// Samples after which these shares are less than half: what comes free without turning much has come free.
+const WIDER_AFTER: usize = 100;
 /// What is close to a rotation, radians.
 const CLOSE_ROTATION: f32 = 0.8;
 
@@ -343,7 +347,11 @@ impl Search<'_, '_, '_> {
     fn sample(&mut self, starts: usize) -> Placement {
         if self.random.next_f32() < OF_STARTS {
             let index = (self.random.next_f32() * starts as f32) as usize;
-            return self.trees[START].nodes()[index.min(starts - 1)].placement;
+            let start = self.trees[START].nodes()[index.min(starts - 1)].placement;
+            if self.random.next_f32() < AS_IT_STARTS {
+                return start;
+            }
+            return Placement::new(start.centre(), self.rotation());
         }
         let goal = self.goal;
         let centre = if self.random.next_f32() < NEAR_GOAL {
@@ -353,7 +361,12 @@ impl Search<'_, '_, '_> {
             let at = Vector::from([(); 3].map(|()| self.random.next_f32()));
             self.region.min + self.region.extents().component_mul(&at)
         };
-        let (choice, [same, close]) = (self.random.next_f32(), ROTATED_AS_GOAL);
+        let shares = if self.counts.samples < WIDER_AFTER {
+            ROTATED_AS_GOAL
+        } else {
+            ROTATED_AS_GOAL.map(|share| 0.4 * share)
+        };
+        let (choice, [same, close]) = (self.random.next_f32(), shares);
         let rotation = if choice < same {
             goal.rotation()
         } else if choice < same + close {
@@ -394,7 +407,7 @@ fn follow(tree: &Tree, from: usize, route: &mut Route) {
 }
 
 /// Directions in which ways out are tried.
-const DIRECTIONS: usize = 32;
+const DIRECTIONS: usize = 24;
 
 /// Places outside of a box, one in each of some directions from a place, with its rotation. They are not tested.
 pub(super) fn outside<'o>(
@@ -403,9 +416,12 @@ pub(super) fn outside<'o>(
     reach: f32,
     up: Vector,
 ) -> impl Iterator<Item = Placement> + 'o {
-    // Straight up comes first: that is how most things are taken off.
-    let directions =
-        core::iter::once(up).chain((0..DIRECTIONS).map(|index| fibonacci_direction(index, DIRECTIONS)));
+    // Straight up comes first: that is how most things are taken off. Then along the axes, as most things are made.
+    let axes = [Vector::x(), Vector::y(), Vector::z()];
+    let directions = core::iter::once(up)
+        .chain(axes)
+        .chain(axes.map(|axis| -axis))
+        .chain((0..DIRECTIONS).map(|index| fibonacci_direction(index, DIRECTIONS)));
     directions.map(move |direction| {
         let centre = from.centre();
         // Least way until the ball around what moves is off the box.

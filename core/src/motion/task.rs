@@ -100,7 +100,7 @@ impl Motion<'_> {
             if gripper.parts.is_empty() {
                 return Err(MotionError::NoParts);
             }
-            if !(Vector::from(gripper.retreat).norm() <= 10.0) {
+            if !(0.0..=10.0).contains(&Vector::from(gripper.retreat).norm()) {
                 return Err(MotionError::Retreat);
             }
         }

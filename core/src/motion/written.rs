@@ -6,6 +6,9 @@ use super::route::{Route, parts};
 use crate::geometry::Point;
 use crate::hanging::Distance;
 
+/// Metres and radians below which a motion is none: single precision.
+const LEAST_LEG: f32 = 1e-6;
+
 /// Waypoints that are written one after another, and counted also where there is no room for them.
 pub(super) struct Written<'w> {
     pub(super) waypoints: &'w mut [Waypoint],
@@ -25,8 +28,11 @@ impl Written<'_> {
         }
     }
 
-    /// Appends a motion from a place that has been written.
+    /// Appends a motion, unless it is none, from a place that has been written.
     pub(super) fn leg(&mut self, from: &Placement, leg: &Leg, centre: &Point) {
+        if leg.shift.norm() + leg.turn.norm() < LEAST_LEG {
+            return;
+        }
         let parts = parts(leg, &self.step);
         for part in 1..=parts {
             self.push(&from.after(leg, part as f32 / parts as f32), centre);

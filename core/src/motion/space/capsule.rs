@@ -54,7 +54,7 @@ impl<'q, C: Collector> CapsuleQuery<'q, C> {
     }
 
     /// Vector from a point to the nearest point of the segment.
-    fn from_point(&self, point: &Point) -> Vector {
+    fn to_segment(&self, point: &Point) -> Vector {
         let (axis, arm) = (self.to - self.from, point - self.from);
         let square = axis.norm_squared();
         let share = if square > 0.0 { (arm.dot(&axis) / square).clamp(0.0, 1.0) } else { 0.0 };
@@ -63,12 +63,12 @@ impl<'q, C: Collector> CapsuleQuery<'q, C> {
 
     fn is_beyond(&self, centre: &Point, radius: f32) -> bool {
         let limit = radius + self.radius + self.found.limit();
-        self.from_point(centre).norm_squared() > limit * limit
+        self.to_segment(centre).norm_squared() > limit * limit
     }
 
     /// Offers a ball.
     fn ball(&mut self, centre: &Point, radius: f32, obstacle: Obstacle) {
-        let way = self.from_point(centre);
+        let way = self.to_segment(centre);
         self.queries += 1;
         self.offer(way.norm() - radius - self.radius, *centre, unit_or(way, Vector::zeros()), obstacle);
     }

@@ -6,7 +6,7 @@ mod touch;
 mod track;
 mod workspace;
 
-pub(super) use touch::{Nearest, Touches};
+pub(super) use touch::{Nearest, Touch, Touches};
 pub(super) use workspace::Workspace;
 
 use capsule::CapsuleQuery;
@@ -170,7 +170,7 @@ impl<'a> Obstacles<'a> {
 }
 
 /// Median distance between neighbours, metres.
-fn spacing_of(tree: &PointTree) -> f32 {
+pub(super) fn spacing_of(tree: &PointTree) -> f32 {
     let points = tree.points();
     let mut spacings: [f32; SPACING_PROBES] = core::array::from_fn(|k| {
         let mut found = [Neighbour::default(); 2];

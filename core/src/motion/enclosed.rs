@@ -1,0 +1,297 @@
+//! A proof that there is no way out: a closed curve in the object and one in the supporter are linked like two rings of a chain.
+//!
+//! No motion without collision changes how often one curve winds through the other, and far away it does not. Both curves are found
+//! in the same way: a graph of places inside the solid is flooded, and each place is numbered by how often the way to it has gone
+//! round. Where two ways to the same place disagree, a closed curve goes round. In the object the graph is a grid, and it must go
+//! round a bar at which the object hangs; in the supporter it is that of its points, and it must go through that curve.
+
+use super::end::End;
+use super::placement::Placement;
+use super::space::{Space, Touch, Touches, spacing_of};
+use crate::geometry::{Aabb, Point, PointTree, Pose, Vector};
+use crate::mechanics::Body;
+use crate::memory::{Arena, array_bytes, larger};
+use crate::monitor::Meter;
+use crate::perception::far_side;
+use bytemuck::{Pod, Zeroable};
+
+/// Cells of the object's grid along its largest extent.
+const CELLS: usize = 64;
+/// Cells of the object that are looked at, at most. More than a thin-walled object has.
+const MAX_CELLS: usize = 1 << 16;
+/// Distance from the centre of a cell to its corners, in cells: what is closer may be in it.
+const HALF_DIAGONAL: f32 = 0.87;
+/// Distance between points of the supporter that belong together, in multiples of the spacing. Of points that are sampled at
+/// random, one in thousands is farther from all others.
+const LINK: f32 = 3.0;
+/// Most points of the curve in the object.
+const MAX_CURVE: usize = 4 * CELLS;
+/// Distance within which object and supporter touch, metres: more than that of a release pose.
+const TOUCH_RANGE: f32 = 0.003;
+/// Depth inside the bar of the line that stands for it, metres.
+const DEPTH: f32 = 0.001;
+
+/// Bytes of working memory for a supporter of at most `points`.
+pub(super) const fn bytes(points: usize) -> usize {
+    let points = far_side::max_points(points);
+    let of_object = array_bytes::<Cell>(CELLS * CELLS * CELLS).saturating_add(array_bytes::<u32>(MAX_CELLS));
+    let of_supporter = array_bytes::<i8>(points).saturating_add(array_bytes::<u32>(points));
+    larger(of_object, of_supporter)
+}
+
+/// Whether object and supporter are linked at a pose, which touches, or nearly touches, at `touches`. Returns the width of the gaps
+/// that are taken as closed, metres; `None` if no link is found.
+pub(super) fn link(
+    space: &mut Space,
+    at: &Placement,
+    arena: &mut Arena,
+    meter: &mut Meter,
+) -> Result<Option<f32>, End> {
+    let mut touches = Touches::within(TOUCH_RANGE);
+    space.collect(at, &mut touches, meter)?;
+    let (support, pose) = (space.obstacles.support, &at.pose(&space.moving.centre));
+    let Some(body) = &space.moving.body else { return Ok(None) };
+    let reach = LINK * spacing_of(&support.tree);
+    for touch in &touches.list {
+        let Some(bar) = support.bar_near(&touch.at, &touch.normal) else { continue };
+        let mut curve = Curve::new();
+        let grid = Grid::around(body);
+        if grid.curve_around(pose, touch, &bar, &mut curve, arena.scratch(), meter)?
+            && goes_through(&support.tree, touch, reach, &curve, arena.scratch(), meter)?
+        {
+            return Ok(Some(reach.max(2.0 * HALF_DIAGONAL * grid.cell)));
+        }
+    }
+    Ok(None)
+}
+
+type Curve = heapless::Vec<Point, MAX_CURVE>;
+
+/// A cell of the object's grid.
+#[derive(Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Cell {
+    /// [`UNKNOWN`](Self::UNKNOWN), [`EMPTY`](Self::EMPTY), or that it is of the object.
+    state: u8,
+    /// The neighbour from which it was reached.
+    from: u8,
+    /// How often the way to it goes round.
+    turns: i8,
+}
+
+impl Cell {
+    const UNKNOWN: u8 = 0;
+    const EMPTY: u8 = 1;
+    const OF_OBJECT: u8 = 2;
+    /// `from` of the first cell.
+    const ROOT: u8 = 6;
+}
+
+/// Cubes that cover the object, in its coordinates.
+struct Grid<'b> {
+    body: &'b Body<'b>,
+    origin: Point,
+    /// Edge length, metres.
+    cell: f32,
+}
+
+impl<'b> Grid<'b> {
+    fn around(body: &'b Body<'b>) -> Self {
+        let aabb = body.surface.aabb();
+        // A cell on either side is left free.
+        let cell = body.extent / (CELLS - 2) as f32;
+        Self { body, origin: aabb.min - Vector::repeat(cell), cell }
+    }
+
+    fn index(&self, place: [usize; 3]) -> usize {
+        (place[2] * CELLS + place[1]) * CELLS + place[0]
+    }
+
+    fn place(&self, index: usize) -> [usize; 3] {
+        [index % CELLS, index / CELLS % CELLS, index / (CELLS * CELLS)]
+    }
+
+    fn place_of(&self, point: &Point) -> [usize; 3] {
+        [0, 1, 2].map(|axis| {
+            let at = (point[axis] - self.origin[axis]) / self.cell;
+            (at.max(0.0) as usize).min(CELLS - 1)
+        })
+    }
+
+    fn centre(&self, index: usize) -> Point {
+        self.origin + Vector::from(self.place(index).map(|k| (k as f32 + 0.5) * self.cell))
+    }
+
+    /// The cell beside another, 0 to 5 for either side along each axis.
+    fn beside(&self, index: usize, side: u8) -> Option<usize> {
+        let (mut place, axis) = (self.place(index), side as usize / 2);
+        place[axis] = if side.is_multiple_of(2) { place[axis].checked_sub(1)? } else { place[axis] + 1 };
+        (place[axis] < CELLS).then(|| self.index(place))
+    }
+
+    /// A point of the object in a cell, or `None` if there is none in it.
+    fn inside(&self, index: usize) -> Option<Point> {
+        let centre = self.centre(index);
+        let (distance, gradient) = self.body.field.sample(&centre);
+        (distance < HALF_DIAGONAL * self.cell).then(|| centre - gradient * distance.max(0.0))
+    }
+
+    /// Finds a closed curve in the object that goes round the bar at a touch, in supporter coordinates.
+    fn curve_around(
+        &self,
+        pose: &Pose,
+        touch: &Touch,
+        bar: &Vector,
+        curve: &mut Curve,
+        arena: Arena,
+        meter: &mut Meter,
+    ) -> Result<bool, End> {
+        let mut arena = arena;
+        let cells = arena.slice::<Cell>(CELLS * CELLS * CELLS)?;
+        let queue = arena.unset::<u32>(MAX_CELLS)?;
+        let to_object = pose.inverse();
+        let (axis, across) = (to_object * bar, to_object * touch.normal);
+        let line = to_object * (touch.at - touch.normal * DEPTH);
+        let side = axis.cross(&across);
+        let flat = |point: &Point| {
+            let arm = point - line;
+            [arm.dot(&across), arm.dot(&side)]
+        };
+        let near = to_object * (touch.at + touch.normal * touch.distance.max(0.0));
+        let first = self.index(self.place_of(&near));
+        cells[first] = Cell { state: Cell::OF_OBJECT, from: Cell::ROOT, turns: 0 };
+        queue[0] = first as u32;
+        let (mut next, mut count) = (0, 1);
+        while next < count {
+            let index = queue[next] as usize;
+            next += 1;
+            meter.distance_queries(6)?;
+            let here = self.inside(index).unwrap_or_else(|| self.centre(index));
+            for side in 0..6 {
+                let Some(beside) = self.beside(index, side) else { continue };
+                if cells[beside].state == Cell::EMPTY {
+                    continue;
+                }
+                let Some(there) = self.inside(beside) else {
+                    cells[beside].state = Cell::EMPTY;
+                    continue;
+                };
+                let turns = cells[index].turns.saturating_add(turn(flat(&here), flat(&there)));
+                if cells[beside].state == Cell::UNKNOWN {
+                    if count == queue.len() {
+                        return Ok(false);
+                    }
+                    cells[beside] = Cell { state: Cell::OF_OBJECT, from: side ^ 1, turns };
+                    queue[count] = beside as u32;
+                    count += 1;
+                } else if cells[beside].turns != turns {
+                    return Ok(self.close(cells, [index, beside], pose, curve));
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// Writes the curve from the first cell to one cell, on to its neighbour, and back.
+    fn close(&self, cells: &[Cell], [there, back]: [usize; 2], pose: &Pose, curve: &mut Curve) -> bool {
+        let point = |index: usize| pose * self.inside(index).unwrap_or_else(|| self.centre(index));
+        let before = |index: usize| match cells[index].from {
+            Cell::ROOT => None,
+            side => self.beside(index, side),
+        };
+        let chain = |from: usize| core::iter::successors(Some(from), move |&index| before(index));
+        let is_short = chain(there).all(|index| curve.push(point(index)).is_ok());
+        curve.reverse();
+        is_short && chain(back).all(|index| curve.push(point(index)).is_ok())
+    }
+}
+
+/// Signed crossing of the half plane behind the line, by the positions across it of the ends of a step.
+fn turn([x, y]: [f32; 2], [u, v]: [f32; 2]) -> i8 {
+    let crosses = (y < 0.0) != (v < 0.0);
+    // Where the step is on the line across.
+    let at = x + (u - x) * y / (y - v);
+    match (crosses && at < 0.0, y < 0.0) {
+        (false, _) => 0,
+        (true, true) => 1,
+        (true, false) => -1,
+    }
+}
+
+/// Whether a closed way along points of the supporter, of steps of at most `reach` metres, goes through a closed curve.
+fn goes_through(
+    tree: &PointTree,
+    touch: &Touch,
+    reach: f32,
+    curve: &[Point],
+    arena: Arena,
+    meter: &mut Meter,
+) -> Result<bool, End> {
+    const UNKNOWN: i8 = i8::MIN;
+    let (mut arena, points) = (arena, tree.points());
+    let passes = arena.unset::<i8>(points.len())?;
+    let queue = arena.unset::<u32>(points.len())?;
+    passes.fill(UNKNOWN);
+    let sum: Vector = curve.iter().map(|point| point.coords).sum();
+    let disc = Disc { curve, apex: Point::from(sum / curve.len() as f32), aabb: Aabb::of(curve) };
+    let first = tree.nearest(&touch.at).index;
+    (passes[first as usize], queue[0]) = (0, first);
+    let (mut next, mut count, mut is_linked) = (0, 1, false);
+    while next < count && !is_linked {
+        let index = queue[next] as usize;
+        next += 1;
+        meter.distance_queries(1)?;
+        tree.for_each_within(&points[index], reach, |neighbour| {
+            let other = neighbour.index as usize;
+            let passed = passes[index].saturating_add(disc.passes(&points[index], &points[other]));
+            if passes[other] == UNKNOWN {
+                (passes[other], queue[count]) = (passed, other as u32);
+                count += 1;
+            } else {
+                is_linked |= passes[other] != passed;
+            }
+        });
+    }
+    Ok(is_linked)
+}
+
+/// A surface with a closed curve as its border: triangles between the curve and an apex.
+struct Disc<'c> {
+    curve: &'c [Point],
+    apex: Point,
+    aabb: Aabb,
+}
+
+impl Disc<'_> {
+    /// How often a step passes through, with the sign of the direction.
+    fn passes(&self, from: &Point, to: &Point) -> i8 {
+        let is_off = (0..3).any(|axis| {
+            from[axis].max(to[axis]) < self.aabb.min[axis] || from[axis].min(to[axis]) > self.aabb.max[axis]
+        });
+        if is_off || from == to {
+            return 0;
+        }
+        let sides = self.curve.iter().zip(self.curve.iter().cycle().skip(1));
+        sides.map(|(a, b)| passes(from, to, [&self.apex, a, b])).fold(0, i8::saturating_add)
+    }
+}
+
+/// Signed passage of a step through a triangle. Neighbouring triangles share the test of their common side, so that a step through
+/// it passes one of them.
+fn passes(from: &Point, to: &Point, [a, b, c]: [&Point; 3]) -> i8 {
+    let is_above = |point: &Point| volume([a, b, c, point]) >= 0.0;
+    if is_above(from) == is_above(to) {
+        return 0;
+    }
+    let [ab, bc, ac] = [[a, b], [b, c], [a, c]].map(|[p, q]| volume([from, to, p, q]) >= 0.0);
+    match (ab, bc, ac) {
+        (true, true, false) => 1,
+        (false, false, true) => -1,
+        _ => 0,
+    }
+}
+
+/// Six times the signed volume of a tetrahedron.
+fn volume([a, b, c, d]: [&Point; 4]) -> f32 {
+    (b - a).cross(&(c - a)).dot(&(d - a))
+}
