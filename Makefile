@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench tables meant calibrate peer lib install deb samples header clean
+.PHONY: help setup demo test bench tables meant reach calibrate peer lib install deb samples header clean
 
 help:
 	@echo "make demo     predict how the sample mug hangs on the sample hook, simulate it and draw it"
@@ -8,6 +8,7 @@ help:
 	@echo "make peer     compare time and poses with another implementation: PEER=peer.py [MESHES=folder]"
 	@echo "make tables   simulate 600 pairs in two engines and write docs/RESULTS.md [MESHES=folder adds real meshes]"
 	@echo "make meant    measure kinds, turned frames, mug trees, tolerances and probabilities [MESHES=folder adds real meshes]"
+	@echo "make reach    plan paths in several scenes, replay them in Bullet and write two sections of docs/RESULTS.md"
 	@echo "make calibrate  refit the constants of docs/PROBABILITY.md"
 	@echo "make lib      build libhangpose.a and libhangpose.so for C and C++ in build/link"
 	@echo "make install  install the libraries and headers: [PREFIX=/usr/local] [DESTDIR=...]"
@@ -63,6 +64,11 @@ meant: setup
 	cargo run --release -p host-tests --bin meant -- many --pairs 15 --seed 41
 	cargo run --release -p host-tests --bin meant -- tolerance --pairs 60 --seed 41
 	cargo run --release -p host-tests --bin meant -- probability --pairs 90 --seed 41 $(if $(MESHES),--meshes $(MESHES))
+
+reach: setup
+	cargo run --release -p host-tests --bin reach -- --peer --out docs/RESULTS.md
+	cargo run --release -p host-tests --bin reach -- --gripper --enclosed 0 --json build/reach_gripper.jsonl \
+		--out docs/RESULTS.md --section "Paths with a gripper"
 
 peer_python = build/peer/bin/python
 

@@ -1,12 +1,16 @@
-//! Compiles the shims over the two physics engines. They are optimised in every profile, since they dominate the run
-//! time.
+//! Compiles the shims over the two physics engines and a planner. They are optimised in every profile, since they dominate the
+//! run time.
 
 fn main() {
     let mut missing = Vec::new();
-    for (library, minimum, package) in [("bullet", "3.0", "libbullet-dev"), ("ode", "0.16", "libode-dev")] {
+    for (source, library, minimum, package) in [
+        ("judge/bullet", "bullet", "3.0", "libbullet-dev"),
+        ("judge/ode", "ode", "0.16", "libode-dev"),
+        ("reach/ompl", "ompl", "1.5", "libompl-dev"),
+    ] {
         // `compile` links the libraries, after the shims that need them.
         match pkg_config::Config::new().atleast_version(minimum).cargo_metadata(false).probe(library) {
-            Ok(found) => compile(library, &found),
+            Ok(found) => compile(source, &found),
             Err(error) => missing.push((package, error)),
         }
     }
@@ -17,7 +21,7 @@ fn main() {
         let packages: Vec<_> = missing.iter().map(|(package, _)| *package).collect();
         eprintln!(
             "host-tests needs Debian's {} and pkg-config: `make setup` installs them",
-            packages.join(" and ")
+            packages.join(", ")
         );
         std::process::exit(1);
     }
@@ -25,8 +29,9 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
 }
 
-fn compile(library: &str, found: &pkg_config::Library) {
-    let source = format!("src/judge/{library}.cpp");
+fn compile(source: &str, found: &pkg_config::Library) {
+    let name = format!("hangpose_{}", source.replace('/', "_"));
+    let source = format!("src/{source}.cpp");
     println!("cargo::rerun-if-changed={source}");
     let mut build = cc::Build::new();
     build.cpp(true).std("c++17").opt_level(2).warnings(true).file(&source);
@@ -38,7 +43,7 @@ fn compile(library: &str, found: &pkg_config::Library) {
     for (name, value) in &found.defines {
         build.define(name, value.as_deref());
     }
-    build.compile(&format!("judge_{library}"));
+    build.compile(&name);
     for path in &found.link_paths {
         println!("cargo::rustc-link-search=native={}", path.display());
     }

@@ -31,6 +31,8 @@ command -v c++ >/dev/null || missing+=(g++)
 command -v pkg-config >/dev/null || missing+=(pkg-config)
 pkg-config --exists bullet 2>/dev/null || missing+=(libbullet-dev)
 pkg-config --exists ode 2>/dev/null || missing+=(libode-dev)
+# The planner that ours is compared with.
+pkg-config --exists ompl 2>/dev/null || missing+=(libompl-dev)
 # The tools that build and package the C library, and the compilers and checkers of its tests.
 command -v cmake >/dev/null || missing+=(cmake)
 command -v make >/dev/null || missing+=(make)

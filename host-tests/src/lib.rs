@@ -4,6 +4,7 @@
 pub mod gallery;
 pub mod judge;
 mod predicted;
+pub mod reach;
 pub mod scan;
 pub mod shapes;
 mod shell;

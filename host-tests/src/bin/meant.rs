@@ -8,7 +8,8 @@ use hangpose::hanging::{HangingPose, Request, Rest, predict_bytes, predict_many}
 use hangpose::mechanics::{Contact, Kind, Kinds};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, sample_supporter};
 use host_tests::judge::{Bullet, Judge, Scene};
-use host_tests::shapes::{Bar, Joint, OBJECTS, Random, SUPPORTERS, meant};
+use host_tests::reach::tree::Tree;
+use host_tests::shapes::{Bar, Joint, Random};
 use host_tests::tables::case::{Case, Fit, made};
 use host_tests::tables::proportion::wilson;
 use host_tests::tables::real::real;
@@ -441,10 +442,6 @@ fn pictures(cases: &[Case], folder: &Path) -> Result<()> {
 /// Number of points that a tree is sampled to.
 const TREE_POINTS: usize = 10_000;
 
-/// Largest extent of a mug with its handle, in distances between the tips of neighbouring pegs; larger mugs are made smaller. It
-/// hangs half as far to either side of its peg, so that neighbours have room.
-const ROOM: f32 = 0.8;
-
 /// What became of the mugs of one tree.
 struct Filled {
     pegs: usize,
@@ -470,24 +467,8 @@ fn many(trees: usize, seed: u64, threads: usize) {
 }
 
 fn fill(seed: u64) -> Filled {
-    let named = |name: &str| OBJECTS.iter().find(|kind| kind.name == name).expect("there are mugs");
-    let tree = SUPPORTERS.iter().find(|kind| kind.name == "mug tree").expect("there are trees").make(seed);
+    let Tree { tree, mugs, .. } = Tree::new(seed);
     let pegs = tree.bars.len();
-    let tip = |bar: &Bar| Point::from(bar.position) + Vector::from(bar.direction) * bar.length;
-    let apart = |a: &Bar| {
-        let others = tree.bars.iter().map(|b| (tip(a) - tip(b)).norm()).filter(|distance| *distance > 0.0);
-        others.fold(f32::INFINITY, f32::min)
-    };
-    let nearest = tree.bars.iter().map(apart).fold(f32::INFINITY, f32::min);
-    let mugs: Vec<_> = (0..)
-        .map(|k| {
-            let mug = named("mug").make(seed.wrapping_mul(1009).wrapping_add(k));
-            let size = mug.solid.mesh().aabb().extents().max();
-            mug.scaled((ROOM * nearest / size).min(1.0))
-        })
-        .filter(|mug| meant(mug, &tree) == Some(Kind::Threaded))
-        .take(pegs)
-        .collect();
     let params = Params { seed, ..Params::default() };
     let cloud = sample_supporter(&tree.solid.mesh(), TREE_POINTS, seed);
     let (monitor, mut memory) = (Monitor::new(), Vec::new());

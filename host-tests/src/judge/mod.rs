@@ -11,6 +11,7 @@ mod freedom;
 mod mass;
 mod ode;
 mod overlap;
+pub mod replay;
 mod verdict;
 mod world;
 

@@ -43,8 +43,12 @@ impl OpeningKind {
 pub struct Joint {
     /// How the object hangs by it.
     pub kind: Kind,
+    /// Index of the opening.
+    pub opening: usize,
     /// Index of the bar nearest to the place where it passes the opening.
     pub bar: usize,
+    /// The place, in supporter coordinates, m.
+    pub at: [f32; 3],
 }
 
 /// The opening of a made object that is joined with a bar of a made supporter when the object is at `rest`; that of the
@@ -60,14 +64,15 @@ pub struct Joint {
 /// - A neck is joined with two bars on opposite sides of the stem that are within the radius of the head.
 pub fn joined(object: (&Solid, &[Opening]), supporter: (&Solid, &[Bar]), rest: &Pose) -> Option<Joint> {
     let (surface, lines) = (Surface::new(object.0), Lines::new(supporter));
-    let joints = object.1.iter().filter_map(|opening| {
+    let joints = object.1.iter().enumerate().filter_map(|(index, opening)| {
         let at = lines.joined(&surface, opening, rest)?;
         let nearest = |a: &(usize, &Bar), b: &(usize, &Bar)| {
             let distance = |bar: &Bar| length(sub(at, nearest_on(ends(bar), at)));
             distance(a.1).total_cmp(&distance(b.1))
         };
         let bar = supporter.1.iter().enumerate().min_by(nearest)?.0;
-        Some(Joint { kind: opening.kind.hangs(), bar })
+        let at = super::vector::single(at);
+        Some(Joint { kind: opening.kind.hangs(), opening: index, bar, at })
     });
     joints.min_by_key(|joint| rank(&joint.kind))
 }

@@ -4,10 +4,11 @@
 //! up; on a wall, the front of its plate is at x = 0 and it points towards +x.
 //!
 //! Whether an object fits on a supporter, how a person would hang it, and how it hangs at a rest pose follow from their
-//! construction, independent of any predictor: see [`fits`], [`meant`] and [`joined`].
+//! construction, independent of any predictor: see [`fits`], [`meant`], [`joined`] and [`insertion`].
 
 mod builder;
 mod fits;
+mod insertion;
 mod meant;
 mod objects;
 mod openings;
@@ -17,6 +18,7 @@ mod supporters;
 pub mod vector;
 
 pub use builder::Builder;
+pub use insertion::{Insertion, insertion};
 pub use meant::{Joint, fits, joined, meant};
 pub use objects::OBJECTS;
 pub use random::Random;

@@ -1,0 +1,58 @@
+//! Whether an object can be brought to the pose in which it hangs, by the construction of both.
+
+use super::vector::{dot, double};
+use super::{Bar, Joint, Opening, OpeningKind};
+use crate::solid::Solid;
+use serde::{Deserialize, Serialize};
+
+/// Whether there is a way of an object to the pose in which it hangs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Insertion {
+    /// There is.
+    Possible,
+    /// There is none, since object and supporter are linked or one encloses the other.
+    Impossible,
+    /// The construction does not tell.
+    Unknown,
+}
+
+/// Distance from the ends of a supporter within which a bar without a free end may still have a stub, m.
+const END: f64 = 0.05;
+
+/// Whether there is a way to a pose that is joined as told. `is_closed` says whether a wall closes the loop of every bar without a
+/// free end.
+///
+/// - A closed hole comes over the free end of a bar if the end is not wider than the hole. A wider end may pass a hole that
+///   is longer in one direction, which is not told.
+/// - A closed hole around a bar without a free end is linked with it. Without a wall, it may come over the plates at its
+///   ends, which is not told.
+/// - Everything else comes from the open side: a hook over the bar, a hollow over the end, a neck between two free ends, and
+///   what lies on top from above.
+pub fn insertion(
+    joint: Option<Joint>,
+    openings: &[Opening],
+    (supporter, bars): (&Solid, &[Bar]),
+    is_closed: bool,
+) -> Insertion {
+    let Some(joint) = joint else { return Insertion::Possible };
+    let (opening, bar) = (&openings[joint.opening], &bars[joint.bar]);
+    match opening.kind {
+        OpeningKind::Hole if bar.has_free_end => {
+            if opening.clear_radius > bar.pass_radius {
+                Insertion::Possible
+            } else {
+                Insertion::Unknown
+            }
+        }
+        OpeningKind::Hole => {
+            let direction = double(bar.direction);
+            let along = |v: [f32; 3]| dot(double(v), direction);
+            let at = along(joint.at);
+            let ends = supporter.vertices.iter().map(|&vertex| along(vertex) - at);
+            let (low, high) = ends.fold((0.0_f64, 0.0_f64), |(low, high), s| (low.min(s), high.max(s)));
+            let is_between = low < -END && high > END;
+            if is_closed && is_between { Insertion::Impossible } else { Insertion::Unknown }
+        }
+        OpeningKind::Hook | OpeningKind::Rim | OpeningKind::Neck { .. } => Insertion::Possible,
+    }
+}
