@@ -4,6 +4,7 @@
 //! [`Task`] says what moves among what; the answer is a [`Path`] or a [`PlanFailure`].
 
 mod certify;
+mod clearance;
 mod enclosed;
 mod end;
 mod error;
@@ -27,6 +28,7 @@ mod timing;
 mod tree;
 mod written;
 
+pub use clearance::Clearance;
 pub use error::PlanError;
 pub use failure::{Collision, Mover, Obstacle, PlanFailure};
 pub use gripper::{Capsule, Gripper};

@@ -1,6 +1,7 @@
 //! Plans a path for one pose: of the object to it, and of the gripper away.
 
 use super::certify::certify;
+use super::clearance::{body_of, space_of};
 use super::enclosed;
 use super::end::End;
 use super::error::PlanError;
@@ -13,15 +14,15 @@ use super::placement::Placement;
 use super::route::Route;
 use super::search::{Outcome, Search, box_around, outside};
 use super::shorten::shorten;
-use super::space::{Moving, Obstacles, Space, Workspace};
+use super::space::{Moving, Obstacles, Space};
 use super::task::Task;
 use super::timing::set_times;
 use super::tree::{Metric, Tree};
 use super::written::Written;
 use crate::geometry::{Aabb, Pose};
-use crate::hanging::{HangingPose, Hung};
+use crate::hanging::HangingPose;
 use crate::mechanics::Body;
-use crate::memory::{Arena, Limits, OutOfMemory, model_bytes};
+use crate::memory::{Arena, Limits, OutOfMemory, larger, model_bytes};
 use crate::monitor::{Meter, Monitor};
 use crate::random::Random;
 
@@ -42,12 +43,11 @@ const MARGIN: f32 = 1.5;
 
 /// Bytes of working memory for [`plan`]: a supporter within `limits`, `scene` points of a scene and trees of `nodes`.
 pub const fn plan_bytes(limits: &Limits, scene: usize, nodes: usize) -> usize {
-    model_bytes(
-        Obstacles::bytes(limits.points, scene)
-            .saturating_add(Space::bytes(limits.points))
-            .saturating_add(enclosed::bytes(limits.points))
-            .saturating_add(Room::bytes(nodes)),
-    )
+    let search = Space::bytes(limits.points)
+        .saturating_add(Room::bytes(nodes))
+        .saturating_add(enclosed::bytes(limits.points));
+    let scratch = larger(Obstacles::scratch_bytes(limits.points, scene), search);
+    model_bytes(Obstacles::bytes(limits.points, scene).saturating_add(scratch))
 }
 
 /// Plans a path of the object to `goal`, and of the gripper away from it; or, to take it off, the other way.
@@ -82,11 +82,7 @@ pub(super) fn outline(
     task.motion.validate()?;
     let needed = plan_bytes(&task.supporter.limits(), task.request.scene.len(), task.motion.nodes);
     let arena = Arena::new(memory, needed)?;
-    let body = task.object.body().ok_or(PlanError::NoDistanceField { hung: None })?;
-    let is_without_field = |hung: &Hung| hung.object.distance_field().is_none();
-    if let Some(index) = task.request.hung.iter().position(is_without_field) {
-        return Err(PlanError::NoDistanceField { hung: Some(index) });
-    }
+    let body = body_of(task)?;
     let mut meter = Meter::new(monitor);
     let mut planner = Planner { task, body, counts: PlanCounts::default(), meter: &mut meter };
     let mut permit = Permit::new(accepts, body.centre);
@@ -144,16 +140,15 @@ impl<'a> Planner<'_, 'a, '_> {
         let rest = goal.rest.map_or(goal.pose, |rest| rest.pose);
         let [release, resting] = [&goal.pose, &rest].map(|pose| Placement::of(pose, &body.centre));
         let start = motion.start.map(|start| Placement::of(&start, &body.centre));
-        let moving = Moving::held(body, motion.gripper);
+        let reach = Moving::held(body, motion.gripper).reach;
         let supporter = self.task.supporter.points().aabb();
         let ends = start.iter().chain([&release]).map(Placement::centre);
-        let region = box_around(&supporter, ends, MARGIN * moving.reach);
+        let region = box_around(&supporter, ends, MARGIN * reach);
 
         let mut arena = arena;
-        let obstacles = Obstacles::build(self.task, &region, &mut arena)?;
+        let free = [goal.pose, motion.start.unwrap_or(goal.pose)];
+        let mut space = space_of(self.task, &region, &free, &mut arena)?;
         let mut room = Room::new(motion.nodes, &mut arena)?;
-        let workspace = motion.workspace.map(|aabb| Workspace::new(aabb, self.task.object.surface().aabb()));
-        let mut space = Space::of_object(moving, obstacles, workspace, &mut arena)?;
 
         let clearance = self.way_of_object(
             &mut space,

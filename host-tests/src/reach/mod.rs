@@ -1,6 +1,5 @@
 //! Problems of motion, whose answers are known by construction, and what the planner makes of them.
 
-pub mod checker;
 pub mod enclosed;
 pub mod grip;
 pub mod ompl;

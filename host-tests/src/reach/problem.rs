@@ -1,6 +1,5 @@
 //! A problem of motion: planned, and its path replayed.
 
-use super::checker::Checker;
 use super::ompl;
 use super::row::{Outcome, Peer, Planned};
 use crate::judge::replay::replay;
@@ -9,9 +8,9 @@ use crate::shapes::Random;
 use crate::shapes::vector::{V, Z, cross};
 use crate::solid::Solid;
 use hangpose::Monitor;
-use hangpose::geometry::{Point, Pose, Vector};
+use hangpose::geometry::{Aabb, Point, Pose, Vector};
 use hangpose::hanging::HangingPose;
-use hangpose::motion::{Gripper, PlanError, Task, Waypoint, plan, plan_bytes};
+use hangpose::motion::{Clearance, Gripper, PlanError, Task, Waypoint, plan, plan_bytes};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use std::time::Instant;
 
@@ -19,6 +18,10 @@ use std::time::Instant;
 const WAYPOINTS: usize = 20_000;
 /// Largest angle by which the object is turned at the start, rad.
 const TURNED: f64 = 0.8;
+/// Distance at which a pose is free for the peer, m, if the ends have more: that of the planner in narrow places.
+const FREE: f32 = 0.0005;
+/// Share of the distance at the ends at which it is free otherwise.
+const KEPT: f32 = 0.5;
 /// Free distance of the start from everything, m.
 const CLEAR: f64 = 0.03;
 /// How far the start is moved to the sides, up or down at most, m.
@@ -77,9 +80,15 @@ impl Problem<'_> {
         let points = || self.obstacles.vertices.iter().map(|&vertex| Point::from(vertex)).chain(ends);
         let low = points().reduce(|a, b| a.inf(&b))? - Vector::repeat(reach);
         let high = points().reduce(|a, b| a.sup(&b))? + Vector::repeat(reach);
-        let checker = Checker::new(object, reach, self.obstacles, &self.goal.pose);
+        let free = [start, self.goal.pose];
+        let region = Aabb { min: low, max: high };
+        let scene = self.task.request.scene.len();
+        let mut memory = vec![0; Clearance::bytes(&self.task.supporter.limits(), scene)];
+        let mut clearance = Clearance::new(&self.task, &region, &free, &mut memory).ok()?;
+        // As the planner: half of what the ends have.
+        let required = free.map(|pose| KEPT * clearance.at(&pose)).into_iter().fold(FREE, f32::min);
         let bounds = [low.into(), high.into()];
-        let is_free = &mut |pose: &Pose| checker.is_free(pose);
+        let is_free = &mut |pose: &Pose| clearance.at(pose) >= required;
         Some(ompl::peer([&start, &self.goal.pose], bounds, (centre, reach), is_free))
     }
 }

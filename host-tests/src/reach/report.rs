@@ -119,8 +119,8 @@ fn peers(rows: &[Row]) -> String {
     let found = both.iter().filter(|(plan, _)| plan.is_found()).count();
     let ours = milliseconds(both.iter().map(|(plan, _)| *plan));
     format!(
-        "OMPL's RRT-Connect on the same problems, 2 s at most, with samples of all that stands still at 3 mm in the same \
-         distance field as its collision checker; its paths are neither shortened nor replayed:\n\n\
+        "OMPL's RRT-Connect on the same problems, 2 s at most, with the planner's own test of poses, \
+         `motion::Clearance`, as its collision checker; its paths are neither shortened nor replayed:\n\n\
          | planner | problems | path found | median ms | p95 ms | max ms |\n|---|--:|--:|--:|--:|--:|\n\
          | hangpose | {0} | {1} | {ours} |\n| OMPL RRTConnect | {0} | {2} | {3} | {4} | {5} |\n\n",
         both.len(),

@@ -106,10 +106,10 @@ impl<'a> Obstacles<'a> {
         array_bytes::<u32>(groups)
             .saturating_add(array_bytes::<Node>(Bvh::max_nodes(groups)))
             .saturating_add(PointTree::bytes(scene))
-            .saturating_add(Self::scratch_bytes(points, scene))
     }
 
-    const fn scratch_bytes(points: usize, scene: usize) -> usize {
+    /// Bytes of working memory for [`build`](Self::build).
+    pub(super) const fn scratch_bytes(points: usize, scene: usize) -> usize {
         let of_scene = PointTree::scratch_bytes(scene)
             .saturating_add(array_bytes::<Point>(scene))
             .saturating_add(array_bytes::<u32>(scene));
@@ -215,6 +215,16 @@ impl<'a> Space<'a> {
     /// A gripper without an object among obstacles.
     pub(super) fn of_gripper(moving: Moving<'a>, obstacles: Obstacles<'a>) -> Self {
         Self { moving, obstacles, workspace: None, track: Track::none() }
+    }
+
+    /// Makes the points of the scene smaller where they would be in the way at poses at which they are not.
+    pub(super) fn make_room(&mut self, free: &[Pose]) {
+        let (Some(body), Some(scene)) = (&self.moving.body, &self.obstacles.scene) else { return };
+        for pose in free {
+            let mut nearest = Nearest::within(2.0 * self.obstacles.scene_radius);
+            ObjectQuery::new(body, pose, &mut nearest).scene(scene, 0.0);
+            self.obstacles.scene_radius = (0.5 * nearest.distance).max(0.0);
+        }
     }
 
     /// The nearest obstacle within `limit` metres.

@@ -1,0 +1,87 @@
+//! How far an object is from everything at a pose, as the planner sees it.
+
+use super::error::PlanError;
+use super::path::MAX_CLEARANCE;
+use super::placement::Placement;
+use super::space::{Moving, Obstacles, Space, Workspace};
+use super::task::Task;
+use crate::geometry::{Aabb, Pose};
+use crate::hanging::Hung;
+use crate::mechanics::Body;
+use crate::memory::{Arena, Limits, model_bytes};
+use crate::monitor::{Meter, Monitor};
+
+/// Distances of an object, with the gripper that holds it, from the supporter, the scene and what hangs already.
+///
+/// It is what [`plan`](super::plan) tests poses with, for planners of one's own.
+pub struct Clearance<'m> {
+    space: Space<'m>,
+}
+
+impl<'m> Clearance<'m> {
+    /// Bytes of memory: a supporter within `limits` and `scene` points of a scene.
+    pub const fn bytes(limits: &Limits, scene: usize) -> usize {
+        model_bytes(
+            Obstacles::bytes(limits.points, scene)
+                .saturating_add(Obstacles::scratch_bytes(limits.points, scene))
+                .saturating_add(Space::bytes(limits.points)),
+        )
+    }
+
+    /// Arranges the obstacles of a task in `memory`, of [`bytes`](Self::bytes), for poses in `region`. At `free` poses the scene is
+    /// out of the way: its points are taken to be so wide that nothing slips through between them, but no wider than these
+    /// poses leave room for.
+    pub fn new(
+        task: &Task<'m>,
+        region: &Aabb,
+        free: &[Pose],
+        memory: &'m mut [u8],
+    ) -> Result<Self, PlanError> {
+        task.params.validate()?;
+        task.request.validate()?;
+        task.motion.validate()?;
+        let needed = Self::bytes(&task.supporter.limits(), task.request.scene.len());
+        let mut arena = Arena::new(memory, needed)?;
+        Ok(Self { space: space_of(task, region, free, &mut arena)? })
+    }
+
+    /// The least distance at a pose, object to supporter coordinates, in metres; capped at [`MAX_CLEARANCE`], negative in a
+    /// collision or outside of the workspace, and a lower bound beyond a few millimetres.
+    pub fn at(&mut self, pose: &Pose) -> f32 {
+        let place = Placement::of(pose, &self.space.moving.centre);
+        let room = self.space.room_at(&place);
+        // Nothing stops it.
+        let monitor = Monitor::new();
+        let mut meter = Meter::new(&monitor);
+        let nearest = self.space.nearest(&place, MAX_CLEARANCE, &mut meter);
+        nearest.map_or(f32::NEG_INFINITY, |nearest| nearest.distance).min(if room < 0.0 {
+            room
+        } else {
+            MAX_CLEARANCE
+        })
+    }
+}
+
+/// The object of a task among its obstacles, in what is left of `arena`.
+pub(super) fn space_of<'a>(
+    task: &Task<'a>,
+    region: &Aabb,
+    free: &[Pose],
+    arena: &mut Arena<'a>,
+) -> Result<Space<'a>, PlanError> {
+    let body = body_of(task)?;
+    let obstacles = Obstacles::build(task, region, arena)?;
+    let workspace = task.motion.workspace.map(|aabb| Workspace::new(aabb, task.object.surface().aabb()));
+    let mut space = Space::of_object(Moving::held(body, task.motion.gripper), obstacles, workspace, arena)?;
+    space.make_room(free);
+    Ok(space)
+}
+
+/// The object of a task, if it and what hangs already have distance fields.
+pub(super) fn body_of<'a>(task: &Task<'a>) -> Result<Body<'a>, PlanError> {
+    let is_without_field = |hung: &Hung| hung.object.distance_field().is_none();
+    match task.request.hung.iter().position(is_without_field) {
+        None => task.object.body().ok_or(PlanError::NoDistanceField { hung: None }),
+        hung => Err(PlanError::NoDistanceField { hung }),
+    }
+}
