@@ -17,8 +17,9 @@ use bytemuck::{Pod, Zeroable};
 
 /// Cells of the object's grid along each axis.
 const CELLS: usize = 64;
-/// Largest edge of a cell, metres: chords from cell to cell must not cut into a bar. Loops wider than the grid are not found.
-const LARGEST_CELL: f32 = 0.0015;
+/// Largest edges of a cell, metres, one tried after another: chords from cell to cell must not cut into a bar, and loops wider
+/// than the grid are not found.
+const LARGEST_CELLS: [f32; 2] = [0.0015, 0.003];
 /// Cells of the object that are looked at, at most. More than a thin-walled object has.
 const MAX_CELLS: usize = 1 << 16;
 /// Distance from the centre of a cell to its corners, in cells: what is closer may be in it.
@@ -66,14 +67,20 @@ pub(super) fn link(
     if reach > COARSEST {
         return Ok(None);
     }
+    let to_object = pose.inverse();
+    let is_outside = |point: &Point| body.field.distance(&(to_object * point)) > 0.0;
     for touch in &touches.list {
         let Some(bar) = support.bar_near(&touch.at, &touch.normal) else { continue };
-        let mut curve = Curve::new();
-        let grid = Grid::around(body, &(pose.inverse() * touch.at));
-        if grid.curve_around(pose, touch, &bar, &mut curve, arena.scratch(), meter)?
-            && goes_through(support, touch, reach, &curve, arena.scratch(), meter)?
-        {
-            return Ok(Some(reach.max(2.0 * grid.between)));
+        for cell in LARGEST_CELLS {
+            let mut curve = Curve::new();
+            let grid = Grid::around(body, &(to_object * touch.at), cell);
+            if !grid.curve_around(pose, touch, &bar, &mut curve, arena.scratch(), meter)? {
+                continue;
+            }
+            if goes_through(support, touch, (reach, &is_outside), &curve, arena.scratch(), meter)? {
+                return Ok(Some(reach.max(2.0 * grid.between)));
+            }
+            break;
         }
     }
     Ok(None)
@@ -113,9 +120,9 @@ struct Grid<'b> {
 
 impl<'b> Grid<'b> {
     /// Around a point of the object.
-    fn around(body: &'b Body<'b>, point: &Point) -> Self {
+    fn around(body: &'b Body<'b>, point: &Point, largest: f32) -> Self {
         // A small object with a cell to spare on either side.
-        let cell = (2.0 * body.extent / (CELLS - 2) as f32).min(LARGEST_CELL);
+        let cell = (2.0 * body.extent / (CELLS - 2) as f32).min(largest);
         let between = (BESIDE_CHORD * cell).max(body.field.voxel_size());
         Self { body, origin: point - Vector::repeat(0.5 * CELLS as f32 * cell), cell, between }
     }
@@ -238,11 +245,12 @@ fn turn([x, y]: [f32; 2], [u, v]: [f32; 2]) -> i8 {
     }
 }
 
-/// Whether a closed way along patches of the supporter, of steps of at most `reach` metres, goes through a closed curve.
+/// Whether a closed way along patches of the supporter goes through a closed curve. Its steps are of at most `reach` metres, and
+/// outside of the object.
 fn goes_through(
     support: &Support,
     touch: &Touch,
-    reach: f32,
+    (reach, is_outside): (f32, &dyn Fn(&Point) -> bool),
     curve: &[Point],
     arena: Arena,
     meter: &mut Meter,
@@ -274,7 +282,12 @@ fn goes_through(
             if patches[index].normal.dot(&step) > limit || patches[other].normal.dot(&-step) > limit {
                 return;
             }
-            let passed = passes[index].saturating_add(disc.passes(&here, &there));
+            let is_near = disc.is_near(&here, &there);
+            let mut between = [0.25, 0.5, 0.75].map(|share| here + step * share).into_iter();
+            if is_near && !between.all(|point| is_outside(&point)) {
+                return;
+            }
+            let passed = passes[index].saturating_add(if is_near { disc.passes(&here, &there) } else { 0 });
             if passes[other] == UNKNOWN {
                 (passes[other], queue[count]) = (passed, other as u32);
                 count += 1;
@@ -294,12 +307,16 @@ struct Disc<'c> {
 }
 
 impl Disc<'_> {
+    /// Whether a step is in the box around the disc, at least in part.
+    fn is_near(&self, from: &Point, to: &Point) -> bool {
+        (0..3).all(|axis| {
+            from[axis].max(to[axis]) >= self.aabb.min[axis] && from[axis].min(to[axis]) <= self.aabb.max[axis]
+        })
+    }
+
     /// How often a step passes through, with the sign of the direction.
     fn passes(&self, from: &Point, to: &Point) -> i8 {
-        let is_off = (0..3).any(|axis| {
-            from[axis].max(to[axis]) < self.aabb.min[axis] || from[axis].min(to[axis]) > self.aabb.max[axis]
-        });
-        if is_off || from == to {
+        if from == to {
             return 0;
         }
         let sides = self.curve.iter().zip(self.curve.iter().cycle().skip(1));

@@ -233,12 +233,12 @@ mod tests {
             let mut next = || random.next_f32() * 2.0 - 1.0;
             let rotation = UnitQuaternion::new_normalize(Quaternion::new(next(), next(), next(), next()));
             // Some on a line, as along a bar.
-            let centre = if k % 3 == 0 {
+            let centre = if k.is_multiple_of(3) {
                 Point::new(k as f32 * 1e-3, 0.0, 0.0)
             } else {
                 Point::new(next(), next(), next())
             };
-            Placement::new(centre, if k % 2 == 0 { UnitQuaternion::identity() } else { rotation })
+            Placement::new(centre, if k.is_multiple_of(2) { UnitQuaternion::identity() } else { rotation })
         };
         assert_eq!(tree.nearest(&placement(1)), None);
         let mut dead = Vec::<usize, 8>::new();
