@@ -77,7 +77,14 @@ pub(super) fn link(
             if !grid.curve_around(pose, touch, &bar, &mut curve, arena.scratch(), meter)? {
                 continue;
             }
-            if goes_through(support, touch, (reach, &is_outside), &curve, arena.scratch(), meter)? {
+            if goes_through(
+                support,
+                touch,
+                (reach, &is_outside),
+                (&curve, grid.cell),
+                arena.scratch(),
+                meter,
+            )? {
                 return Ok(Some(reach.max(2.0 * grid.between)));
             }
             break;
@@ -245,13 +252,13 @@ fn turn([x, y]: [f32; 2], [u, v]: [f32; 2]) -> i8 {
     }
 }
 
-/// Whether a closed way along patches of the supporter goes through a closed curve. Its steps are of at most `reach` metres, and
+/// Whether a closed way along patches of the supporter goes through a closed curve, which is exact to a cell. Its steps are of at most `reach` metres, and
 /// outside of the object.
 fn goes_through(
     support: &Support,
     touch: &Touch,
     (reach, is_outside): (f32, &dyn Fn(&Point) -> bool),
-    curve: &[Point],
+    (curve, cell): (&[Point], f32),
     arena: Arena,
     meter: &mut Meter,
 ) -> Result<bool, End> {
@@ -287,7 +294,12 @@ fn goes_through(
             if is_near && !between.all(|point| is_outside(&point)) {
                 return;
             }
-            let passed = passes[index].saturating_add(if is_near { disc.passes(&here, &there) } else { 0 });
+            let through = if is_near { disc.passes(&here, &there) } else { 0 };
+            // As near to the curve, the way may as well pass on its other side.
+            if through != 0 && disc.distance(&here, &there) < cell {
+                return;
+            }
+            let passed = passes[index].saturating_add(through);
             if passes[other] == UNKNOWN {
                 (passes[other], queue[count]) = (passed, other as u32);
                 count += 1;
@@ -312,6 +324,16 @@ impl Disc<'_> {
         (0..3).all(|axis| {
             from[axis].max(to[axis]) >= self.aabb.min[axis] && from[axis].min(to[axis]) <= self.aabb.max[axis]
         })
+    }
+
+    /// Distance of a step from the points of the curve, metres.
+    fn distance(&self, from: &Point, to: &Point) -> f32 {
+        let step = to - from;
+        let of_point = |point: &Point| {
+            let share = (point - from).dot(&step) / step.norm_squared();
+            (from + step * share.clamp(0.0, 1.0) - point).norm_squared()
+        };
+        libm::sqrtf(self.curve.iter().map(of_point).fold(f32::INFINITY, f32::min))
     }
 
     /// How often a step passes through, with the sign of the direction.

@@ -126,7 +126,7 @@ impl Scene {
             }
         }
         let section = [[-0.01, -0.002], [0.01, -0.002], [0.01, 0.002], [-0.01, 0.002]];
-        let turn = UnitQuaternion::from_euler_angles(0.0, 0.6, 0.4);
+        let turn = UnitQuaternion::from_euler_angles(0.0, 0.5, 0.3);
         let goal = Pose::from_parts(Translation3::new(-0.01, 0.0, 0.0), turn);
         Self { object: prism(0.05, &section), points, normals, goal }
     }
@@ -228,7 +228,7 @@ fn insertions_that_are_possible() {
         ("J hook", Scene::on_j_hook()),
         ("double hook", Scene::on_double_hook()),
         ("carabiner with an open gate", Scene::on_carabiner(0.9)),
-        ("box with a slot", Scene::in_box_with_slot([0.032, 0.014])),
+        ("box with a slot", Scene::in_box_with_slot([0.04, 0.02])),
     ];
     for (name, scene) in scenes {
         match scene.plan(Motion { samples: 5000, nodes: 16_000, ..Motion::DEFAULT }) {
