@@ -73,7 +73,7 @@ impl Motion<'_> {
         clearance: 0.005,
         step: Distance { position: 0.01, rotation: 0.1 },
         speed: Speed { linear: 0.25, angular: 1.0, linear_acceleration: 0.5, angular_acceleration: 2.0 },
-        samples: 600,
+        samples: 400,
         nodes: 4096,
         seed: 1,
     };

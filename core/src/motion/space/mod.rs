@@ -254,10 +254,12 @@ impl<'a> Space<'a> {
             track.move_to(at, moving.reach);
             query.supporter(obstacles.support, track);
             if let Some(scene) = &obstacles.scene {
-                query.scene(scene, obstacles.scene_radius);
+                query.unless_asleep(track, 0, |query| query.scene(scene, obstacles.scene_radius));
             }
             for (index, hung) in obstacles.hung.iter().enumerate() {
-                query.surface(hung.object.surface(), &hung.pose, Obstacle::Hung(index));
+                query.unless_asleep(track, 1 + index, |query| {
+                    query.surface(hung.object.surface(), &hung.pose, Obstacle::Hung(index));
+                });
             }
             meter.distance_queries(query.queries)?;
         }

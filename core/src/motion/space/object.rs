@@ -1,6 +1,6 @@
 //! Distances of the object from what stands still, by its signed distance field.
 
-use super::touch::{Collector, Touch};
+use super::touch::{Collector, Nearest, Touch};
 use super::track::Track;
 use super::{EXACT_UP_TO, PATCH_RANGE};
 use crate::geometry::{Aabb, Node, Point, PointTree, Pose, Surface, Vector};
@@ -14,17 +14,17 @@ const MAX_HALVINGS: usize = 24;
 const SMALLEST_PIECE: f32 = 0.001;
 
 /// The object at a pose.
-pub(super) struct ObjectQuery<'q, 'a, C> {
+pub(super) struct ObjectQuery<'q, 'a> {
     pub(super) body: &'q Body<'a>,
     pub(super) pose: &'q Pose,
     pub(super) to_object: Pose,
-    pub(super) found: &'q mut C,
+    pub(super) found: &'q mut dyn Collector,
     /// Distance queries made.
     pub(super) queries: usize,
 }
 
-impl<'q, 'a, C: Collector> ObjectQuery<'q, 'a, C> {
-    pub(super) fn new(body: &'q Body<'a>, pose: &'q Pose, found: &'q mut C) -> Self {
+impl<'q, 'a> ObjectQuery<'q, 'a> {
+    pub(super) fn new(body: &'q Body<'a>, pose: &'q Pose, found: &'q mut dyn Collector) -> Self {
         Self { body, pose, to_object: pose.inverse(), found, queries: 0 }
     }
 
@@ -102,6 +102,25 @@ impl<'q, 'a, C: Collector> ObjectQuery<'q, 'a, C> {
         self.offer(distance, &at, gradient, Obstacle::Supporter);
         if distance < before {
             track.nearest = patch;
+        }
+    }
+
+    /// Looks at the scene or an object that hangs already, unless it is known to be farther away than matters.
+    pub(super) fn unless_asleep(&mut self, track: &mut Track, other: usize, look: impl Fn(&mut ObjectQuery)) {
+        let limit = self.limit();
+        if !track.is_awake(other, limit) {
+            return;
+        }
+        // Farther than matters now, so that it sleeps for a while.
+        let mut nearest = Nearest::within(limit.max(EXACT_UP_TO));
+        let mut query = ObjectQuery::new(self.body, self.pose, &mut nearest);
+        look(&mut query);
+        self.queries += query.queries;
+        track.note(other, nearest.distance);
+        if nearest.distance < limit && self.found.takes_all() {
+            look(self);
+        } else if let Some(touch) = nearest.touch.filter(|touch| touch.distance < limit) {
+            self.found.offer(touch);
         }
     }
 

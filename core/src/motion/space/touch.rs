@@ -30,6 +30,8 @@ pub(in crate::motion) trait Collector {
     fn limit(&self) -> f32;
     /// Takes a touch with a distance below the limit.
     fn offer(&mut self, touch: Touch);
+    /// Whether it takes more than the nearest touch.
+    fn takes_all(&self) -> bool;
 }
 
 /// The nearest touch within a distance.
@@ -46,6 +48,10 @@ impl Nearest {
 }
 
 impl Collector for Nearest {
+    fn takes_all(&self) -> bool {
+        false
+    }
+
     fn limit(&self) -> f32 {
         self.distance
     }
@@ -78,6 +84,10 @@ impl Touches {
 }
 
 impl Collector for Touches {
+    fn takes_all(&self) -> bool {
+        true
+    }
+
     fn limit(&self) -> f32 {
         self.range
     }

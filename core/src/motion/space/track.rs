@@ -1,5 +1,6 @@
 //! What has been learnt from the poses before: how near each part of the supporter may be by now.
 
+use crate::hanging::MAX_HUNG;
 use crate::mechanics::Support;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::motion::placement::Placement;
@@ -14,6 +15,8 @@ pub(in crate::motion) struct Track<'s> {
     pub(super) groups: &'s mut [f32],
     /// The same for each patch.
     pub(super) patches: &'s mut [f32],
+    /// The same for the scene and for each object that hangs already.
+    others: [f32; OTHERS],
     /// The patch that was the nearest, which is likely to be it again.
     pub(super) nearest: usize,
     at: Option<Placement>,
@@ -21,6 +24,8 @@ pub(in crate::motion) struct Track<'s> {
     pub(super) travelled: f32,
 }
 
+/// The scene, and what hangs already.
+const OTHERS: usize = 1 + MAX_HUNG;
 /// Travel after which the counter starts again, metres: single precision still tells hundredths of a millimetre.
 const MAX_TRAVEL: f32 = 100.0;
 
@@ -33,12 +38,13 @@ impl<'s> Track<'s> {
 
     pub(super) fn new(support: &Support, arena: &mut Arena<'s>) -> Result<Self, OutOfMemory> {
         let (groups, patches) = (arena.unset(support.groups.len())?, arena.unset(support.patches.len())?);
-        Ok(Self { groups, patches, nearest: 0, at: None, travelled: MAX_TRAVEL })
+        Ok(Self { groups, patches, ..Self::none() })
     }
 
     /// For what has no distance field.
     pub(super) fn none() -> Self {
-        Self { groups: &mut [], patches: &mut [], nearest: 0, at: None, travelled: MAX_TRAVEL }
+        let others = [f32::NEG_INFINITY; OTHERS];
+        Self { groups: &mut [], patches: &mut [], others, nearest: 0, at: None, travelled: MAX_TRAVEL }
     }
 
     /// Moves on to a placement of an object of this reach.
@@ -51,6 +57,19 @@ impl<'s> Track<'s> {
             self.travelled = 0.0;
             self.groups.fill(f32::NEG_INFINITY);
             self.patches.fill(f32::NEG_INFINITY);
+            self.others.fill(f32::NEG_INFINITY);
+        }
+    }
+
+    /// Whether the scene, 0, or an object that hangs, counted from 1, may be closer than `limit` metres.
+    pub(super) fn is_awake(&self, other: usize, limit: f32) -> bool {
+        self.others.get(other).is_none_or(|until| until - self.travelled < limit)
+    }
+
+    /// Notes the distance of one of these, metres.
+    pub(super) fn note(&mut self, other: usize, distance: f32) {
+        if let Some(until) = self.others.get_mut(other) {
+            *until = self.travelled + distance;
         }
     }
 }
