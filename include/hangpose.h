@@ -87,13 +87,13 @@
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 46080
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 14
 #define HANGPOSE_PREDICT_BYTES_EACH_POSE 432
-#define HANGPOSE_PLAN_BYTES_AT_LEAST 2048
-#define HANGPOSE_PLAN_BYTES_EACH_POINT 16
+#define HANGPOSE_PLAN_BYTES_AT_LEAST 1050624
+#define HANGPOSE_PLAN_BYTES_EACH_POINT 21
 #define HANGPOSE_PLAN_BYTES_EACH_SCENE_POINT 76
 #define HANGPOSE_PLAN_BYTES_EACH_NODE 218
 #define HANGPOSE_PLAN_BYTES_EACH_WAYPOINT 32
-#define HANGPOSE_REACHABLE_BYTES_AT_LEAST 46080
-#define HANGPOSE_REACHABLE_BYTES_EACH_POINT 16
+#define HANGPOSE_REACHABLE_BYTES_AT_LEAST 1050624
+#define HANGPOSE_REACHABLE_BYTES_EACH_POINT 21
 #define HANGPOSE_REACHABLE_BYTES_EACH_POSE 488
 #define HANGPOSE_REACHABLE_BYTES_EACH_SCENE_POINT 76
 #define HANGPOSE_REACHABLE_BYTES_EACH_NODE 218
@@ -881,7 +881,7 @@ typedef struct hangpose_motion {
   float acceleration;
   // Largest acceleration of rotation, rad/s^2; above 0, at most 1000. Default: 2.
   float angular_acceleration;
-  // Number of poses that are sampled at most: the budget of the search; 1 to 10,000,000. Default: 2000.
+  // Number of poses that are sampled at most: the budget of the search; 1 to 10,000,000. Default: 400.
   uint32_t samples;
   // Capacity of either of the two trees, 64 to 1,000,000; the memory depends on it. Default: 4096.
   uint32_t nodes;

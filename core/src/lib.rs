@@ -9,6 +9,8 @@
 //! Mesh  ──► hanging::Object    ──┐
 //!                                ├─► hanging::predict ─► HangingPose, best first, or a Rejection
 //! Cloud ──► hanging::Supporter ──┘
+//!
+//! HangingPose ──► motion::plan ─► Path, or a PlanFailure
 //! ```
 //!
 //! An [`Object`](hanging::Object) and a [`Supporter`](hanging::Supporter) are analysed once, immutable, and

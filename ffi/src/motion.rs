@@ -77,7 +77,7 @@ pub struct hangpose_motion {
     pub acceleration: f32,
     /// Largest acceleration of rotation, rad/s^2; above 0, at most 1000. Default: 2.
     pub angular_acceleration: f32,
-    /// Number of poses that are sampled at most: the budget of the search; 1 to 10,000,000. Default: 2000.
+    /// Number of poses that are sampled at most: the budget of the search; 1 to 10,000,000. Default: 400.
     pub samples: u32,
     /// Capacity of either of the two trees, 64 to 1,000,000; the memory depends on it. Default: 4096.
     pub nodes: u32,

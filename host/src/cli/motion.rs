@@ -29,7 +29,7 @@ pub(super) struct MotionArguments {
     /// Distance from obstacles that the path keeps where there is room for it, metres [default: 0.005].
     #[arg(long, value_name = "METRES", value_parser = parse_clearance, allow_hyphen_values = true)]
     plan_clearance: Option<f32>,
-    /// Poses that are sampled at most [default: 2000].
+    /// Poses that are sampled at most [default: 400].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MAX_SAMPLES))]
     plan_samples: Option<u32>,
     /// File for the path as CSV: seconds,x,y,z,qx,qy,qz,qw of each waypoint of the object; - for standard output.
