@@ -1,5 +1,7 @@
 //! Points, vectors and poses, and the vector functions that nalgebra leaves out.
 
+use nalgebra::{Quaternion, UnitQuaternion};
+
 /// A position, in metres.
 pub type Point = nalgebra::Point3<f32>;
 /// A direction or a displacement, in metres.
@@ -35,4 +37,12 @@ pub(crate) fn fibonacci_direction(index: usize, count: usize) -> Vector {
     let z = 1.0 - (2.0 * index as f32 + 1.0) / count as f32;
     let (across, angle) = (libm::sqrtf(1.0 - z * z), golden_angle * index as f32);
     Vector::new(across * libm::cosf(angle), across * libm::sinf(angle), z)
+}
+
+/// Rotation about the axis `turn` by its length in radians.
+pub(crate) fn rotation_by(turn: &Vector) -> UnitQuaternion<f32> {
+    let half = 0.5 * turn.norm();
+    // sin(x) / x without a division by zero.
+    let scale = if half > 1e-3 { libm::sinf(half) / half } else { 1.0 - half * half / 6.0 };
+    UnitQuaternion::new_normalize(Quaternion::from_parts(libm::cosf(half), turn * (0.5 * scale)))
 }

@@ -1,8 +1,8 @@
 //! The object in the simulation: a rigid body of uniform density.
 
 use super::Views;
-use crate::geometry::{DistanceField, Point, Pose, Surface, Vector};
-use nalgebra::{Matrix3, Quaternion, Translation3, UnitQuaternion};
+use crate::geometry::{DistanceField, Point, Pose, Surface, Vector, rotation_by};
+use nalgebra::{Matrix3, Translation3, UnitQuaternion};
 
 /// A rigid body in object coordinates. Its mass is one, because no result depends on the mass.
 #[derive(Clone, Copy)]
@@ -84,12 +84,4 @@ impl State {
     pub(crate) fn velocity_at(&self, arm: &Vector) -> Vector {
         self.velocity + self.spin.cross(arm)
     }
-}
-
-/// Rotation about the axis `turn` by its length in radians.
-fn rotation_by(turn: &Vector) -> UnitQuaternion<f32> {
-    let half = 0.5 * turn.norm();
-    // sin(x) / x without a division by zero.
-    let scale = if half > 1e-3 { libm::sinf(half) / half } else { 1.0 - half * half / 6.0 };
-    UnitQuaternion::new_normalize(Quaternion::from_parts(libm::cosf(half), turn * (0.5 * scale)))
 }

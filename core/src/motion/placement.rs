@@ -1,6 +1,6 @@
 //! Where the thing that moves is, the way from one place to the next, and how far that is.
 
-use crate::geometry::{Point, Pose, Vector};
+use crate::geometry::{Point, Pose, Vector, rotation_by};
 use bytemuck::{Pod, Zeroable};
 use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 
@@ -81,14 +81,6 @@ fn rotation_vector(rotation: &UnitQuaternion<f32>) -> Vector {
     let angle = 2.0 * libm::atan2f(sine, scalar.abs());
     let scale = if sine > 1e-6 { angle / sine } else { 2.0 };
     imaginary * if scalar < 0.0 { -scale } else { scale }
-}
-
-/// Rotation about the axis `turn` by its length in radians.
-pub(super) fn rotation_by(turn: &Vector) -> UnitQuaternion<f32> {
-    let half = 0.5 * turn.norm();
-    // sin(x) / x without a division by zero.
-    let scale = if half > 1e-3 { libm::sinf(half) / half } else { 1.0 - half * half / 6.0 };
-    UnitQuaternion::new_normalize(Quaternion::from_parts(libm::cosf(half), turn * (0.5 * scale)))
 }
 
 #[cfg(test)]

@@ -6,23 +6,21 @@
 use super::failure::Obstacle;
 use super::path::PlanCounts;
 use super::permit::Permit;
-use super::placement::{Leg, Placement, rotation_by};
+use super::placement::{Leg, Placement};
 use super::route::Route;
 use super::slide::aside;
 use super::space::{Space, Touches};
 use super::tree::Tree;
-use crate::geometry::{Aabb, Point, Vector, fibonacci_direction};
+use crate::geometry::{Aabb, Vector};
 use crate::hanging::Distance;
 use crate::monitor::{Meter, Stop};
 use crate::random::Random;
-use core::f32::consts::TAU;
 use heapless::Vec;
-use nalgebra::{Quaternion, UnitQuaternion};
 
 /// Index of the tree that grows from the goal.
 const GOAL: usize = 0;
 /// Index of the tree that grows from the starts.
-const START: usize = 1;
+pub(super) const START: usize = 1;
 
 // How branches grow. Set by hand.
 
@@ -53,21 +51,6 @@ const BAR_RANGE: f32 = 0.003;
 const SAME_BAR: f32 = 0.9;
 /// Bars along which the object is dragged from the goal.
 const MAX_BARS: usize = 4;
-
-// Shares of the samples. Set by hand.
-
-/// Share of the samples that are starts.
-const OF_STARTS: f32 = 0.25;
-/// Share of these whose rotation is that of the start: on the way out any may be the one that passes.
-const AS_IT_STARTS: f32 = 0.5;
-/// Share of the other samples whose position is near the goal.
-const NEAR_GOAL: f32 = 0.5;
-/// Shares of the samples with the rotation of the goal, and with one close to it.
-const ROTATED_AS_GOAL: [f32; 2] = [0.4, 0.3];
-/// Samples after which these shares are less than half: what comes free without turning much has come free.
-const WIDER_AFTER: usize = 100;
-/// What is close to a rotation, radians.
-const CLOSE_ROTATION: f32 = 0.8;
 
 /// A search for a way between a goal and one of several starts.
 pub(super) struct Search<'q, 'a, 's> {
@@ -349,58 +332,6 @@ impl Search<'_, '_, '_> {
             self.trees[tree].cut_off(node);
         }
     }
-
-    /// A placement to grow towards.
-    fn sample(&mut self, starts: usize) -> Placement {
-        if self.random.next_f32() < OF_STARTS {
-            let index = (self.random.next_f32() * starts as f32) as usize;
-            let start = self.trees[START].nodes()[index.min(starts - 1)].placement;
-            if self.random.next_f32() < AS_IT_STARTS {
-                return start;
-            }
-            return Placement::new(start.centre(), self.rotation());
-        }
-        let goal = self.goal;
-        let centre = if self.random.next_f32() < NEAR_GOAL {
-            let distance = self.random.next_f32() * self.space.moving.reach;
-            goal.centre() + self.direction() * distance
-        } else {
-            let at = Vector::from([(); 3].map(|()| self.random.next_f32()));
-            self.region.min + self.region.extents().component_mul(&at)
-        };
-        let shares = if self.counts.samples < WIDER_AFTER {
-            ROTATED_AS_GOAL
-        } else {
-            ROTATED_AS_GOAL.map(|share| 0.4 * share)
-        };
-        let (choice, [same, close]) = (self.random.next_f32(), shares);
-        let rotation = if choice < same {
-            goal.rotation()
-        } else if choice < same + close {
-            let angle = self.random.next_f32() * CLOSE_ROTATION;
-            rotation_by(&(self.direction() * angle)) * goal.rotation()
-        } else {
-            self.rotation()
-        };
-        Placement::new(centre, rotation)
-    }
-
-    /// A unit vector, uniform over the sphere.
-    fn direction(&mut self) -> Vector {
-        let (z, angle) = (2.0 * self.random.next_f32() - 1.0, TAU * self.random.next_f32());
-        let across = libm::sqrtf((1.0 - z * z).max(0.0));
-        Vector::new(across * libm::cosf(angle), across * libm::sinf(angle), z)
-    }
-
-    /// A rotation, uniform over SO(3) (Shoemake, "Uniform Random Rotations", 1992).
-    fn rotation(&mut self) -> UnitQuaternion<f32> {
-        let share = self.random.next_f32();
-        let [a, b] = [(); 2].map(|()| TAU * self.random.next_f32());
-        let (low, high) = (libm::sqrtf(1.0 - share), libm::sqrtf(share));
-        let (sin_a, cos_a) = libm::sincosf(a);
-        let (sin_b, cos_b) = libm::sincosf(b);
-        UnitQuaternion::new_normalize(Quaternion::new(high * cos_b, low * sin_a, low * cos_a, high * sin_b))
-    }
 }
 
 /// Appends the places from a node to its root.
@@ -411,45 +342,4 @@ fn follow(tree: &Tree, from: usize, route: &mut Route) {
         route.push(node.placement, clearance);
         clearance = node.clearance;
     }
-}
-
-/// Directions in which ways out are tried.
-const DIRECTIONS: usize = 24;
-
-/// Places outside of a box, one in each of some directions from a place, with its rotation. They are not tested.
-pub(super) fn outside<'o>(
-    aabb: &'o Aabb,
-    from: &'o Placement,
-    reach: f32,
-    up: Vector,
-) -> impl Iterator<Item = Placement> + 'o {
-    // Straight up comes first: that is how most things are taken off. Then along the axes, as most things are made.
-    let axes = [Vector::x(), Vector::y(), Vector::z()];
-    let directions = core::iter::once(up)
-        .chain(axes)
-        .chain(axes.map(|axis| -axis))
-        .chain((0..DIRECTIONS).map(|index| fibonacci_direction(index, DIRECTIONS)));
-    directions.map(move |direction| {
-        let centre = from.centre();
-        // Least way until the ball around what moves is off the box.
-        let is_off = |distance: f32| aabb.distance_squared(&(centre + direction * distance)) > reach * reach;
-        let far = aabb.diagonal() + reach + libm::sqrtf(aabb.distance_squared(&centre));
-        let (mut near, mut far) = (0.0, far * 1.01);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (near + far);
-            if is_off(middle) { far = middle } else { near = middle }
-        }
-        let leg = Leg { shift: direction * far, turn: Vector::zeros() };
-        from.after(&leg, 1.0)
-    })
-}
-
-/// Halvings of the distance to the outside: to a thousandth.
-const HALVINGS: usize = 10;
-
-/// The smallest box around points and a margin.
-pub(super) fn box_around(aabb: &Aabb, points: impl IntoIterator<Item = Point>, margin: f32) -> Aabb {
-    let all = points.into_iter().fold(*aabb, |all, point| all.grow(&point));
-    let margin = Vector::repeat(margin);
-    Aabb { min: all.min - margin, max: all.max + margin }
 }
