@@ -16,9 +16,9 @@ const SIDE: u32 = 320;
 /// Direction from the supporter to the camera: in front of the wall, to the side and above.
 const EYE: [f32; 3] = [0.75, -0.55, 0.37];
 /// Width of the picture of a way, pixels.
-const WIDTH: u32 = 960;
+const WIDTH: u32 = 720;
 /// Direction to the camera in the picture of a way: more from the side, so that what leads to the wall is not in front of it.
-const ASIDE: [f32; 3] = [0.50, -0.78, 0.38];
+const ASIDE: [f32; 3] = [0.50, -0.78, 0.32];
 /// Margin around what is seen of a way, as a share of its larger side.
 const MARGIN: f32 = 0.04;
 /// Rays for each pixel of the picture of a way along each of its sides.
@@ -27,8 +27,10 @@ const FINE: u32 = 2;
 const ON_THE_WAY: usize = 6;
 /// How much the first and the last of them hide of what is behind them.
 const OPACITY: [f32; 2] = [0.30, 0.40];
+/// Share of that by which they hide the supporter and the hanging object, so that these keep their colours.
+const OVER_OPAQUE: f32 = 0.3;
 /// Half the width of the line of the centre of mass, and the radius of the dots on it at the drawn poses, pixels.
-const LINE: [f32; 2] = [1.5, 5.0];
+const LINE: [f32; 2] = [1.2, 4.0];
 /// Distance of the camera, m; larger than any scene.
 const FAR: f32 = 10.0;
 const BACKGROUND: [f32; 3] = [1.0; 3];
@@ -208,9 +210,14 @@ impl Camera {
         };
         let mut hits: Vec<_> = bodies.iter().filter_map(hit).collect();
         hits.sort_by(|a, b| b.0.total_cmp(&a.0));
-        hits.into_iter().fold(BACKGROUND, |behind, (_, colour, opacity)| {
-            [0, 1, 2].map(|i| behind[i] + (colour[i] - behind[i]) * opacity)
-        })
+        let nothing = (BACKGROUND, 1.0);
+        let (colour, _) = hits.into_iter().fold(nothing, |(behind, share), (_, colour, opacity)| {
+            if opacity == 1.0 {
+                return (colour, OVER_OPAQUE);
+            }
+            ([0, 1, 2].map(|i| behind[i] + (colour[i] - behind[i]) * opacity * share), share)
+        });
+        colour
     }
 }
 

@@ -43,6 +43,7 @@ struct PredictedPose {
     path: Option<PlannedPath>,
 }
 
+/// The path of the object. A gripper is not replayed.
 #[derive(Deserialize)]
 struct PlannedPath {
     waypoints: Vec<PlannedWaypoint>,
@@ -124,7 +125,7 @@ fn main() -> Result<()> {
         let way = Way { poses: &poses, centre };
         let rest = replayed.verdict.figures.rest;
         gallery::write_way(&arguments.picture, &object, &supporter, &way, &rest).with_context(picture)?;
-        println!("the way to the hook: {}", picture());
+        println!("the object along the path and at rest: {}", picture());
         ensure!(replayed.passes(), "the path to pose {rank} does not pass the replay");
     } else if let Some((release, rest)) = best {
         gallery::write(&arguments.picture, &object, &supporter, &release, &rest).with_context(picture)?;
