@@ -17,7 +17,8 @@ const SIDE: u32 = 320;
 const EYE: [f32; 3] = [0.75, -0.55, 0.37];
 /// Width of the picture of a way, pixels.
 const WIDTH: u32 = 720;
-/// Direction to the camera in the picture of a way: more from the side, so that what leads to the wall is not in front of it.
+/// Direction to the camera in the picture of a way: more from the side, so that a way to the wall does not hide its
+/// end.
 const ASIDE: [f32; 3] = [0.50, -0.78, 0.32];
 /// Margin around what is seen of a way, as a share of its larger side.
 const MARGIN: f32 = 0.04;
@@ -72,8 +73,8 @@ pub fn write(
     picture.save(path)
 }
 
-/// Writes a PNG with the object at `rest`, paler at poses that are evenly spread on the way, and with the line of its centre
-/// of mass.
+/// Writes a PNG with the object at `rest`, paler at poses that are evenly spread on the way, and with the line of its
+/// centre of mass, which goes on to where that rests.
 pub fn write_way(
     path: &Path,
     object: &Solid,

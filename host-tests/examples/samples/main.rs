@@ -17,7 +17,7 @@ use shapes::{Body, line};
 /// Named closed bodies, which may overlap.
 type Mesh = Vec<(&'static str, Body)>;
 
-/// The mug upright, in front of the hook and below it, with the handle towards the wall: its pose in the frame of the hook.
+/// The mug upright, in front of the hook and below it, with the handle towards the wall: its pose in the hook's frame.
 const MUG_START: &str = "{\"position\": [0.22, 0, -0.16], \"quaternion_xyzw\": [0, 0, 1, 0]}\n";
 
 /// A mug of 3.5 dl. The cup stands on z = 0 about the z axis; the handle is on the side of +x.

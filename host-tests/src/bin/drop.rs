@@ -1,5 +1,5 @@
-//! Simulates the release of an object at its predicted poses in Bullet, replays the path to one of them, prints the verdicts,
-//! and draws a picture.
+//! Simulates the release of an object at its predicted poses in Bullet, replays the path to one of them, prints the
+//! verdicts, and draws a picture.
 
 use anyhow::{Context, Result, ensure};
 use clap::Parser;
@@ -26,7 +26,8 @@ struct Arguments {
     /// Output of `hangpose predict --json`.
     #[arg(long, value_name = "JSON")]
     poses: PathBuf,
-    /// File for the picture of the path. Without a path it shows the first pose that hangs, or the best pose if none does.
+    /// File for the picture of the path. Without a path it shows the first pose that hangs, or the best pose if none
+    /// does.
     #[arg(long, value_name = "PNG")]
     picture: PathBuf,
 }
@@ -114,7 +115,8 @@ fn main() -> Result<()> {
         let centre = scene.centre_of_mass();
         let replayed = replay(&scene, &path, None, centre);
         println!(
-            "path to pose {rank}: {} waypoints, {:.1} s, clearance {:.1} mm; deepest penetration in the replay {:.2} mm: {}",
+            "path to pose {rank}: {} waypoints, {:.1} s, clearance {:.1} mm; \
+             deepest penetration in the replay {:.2} mm: {}",
             waypoints.len(),
             last.seconds,
             path.clearance * 1000.0,
