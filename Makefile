@@ -2,7 +2,7 @@
 .PHONY: help setup demo test bench tables meant reach calibrate peer lib install deb samples header clean
 
 help:
-	@echo "make demo     predict how the sample mug hangs on the sample hook, simulate it and draw it"
+	@echo "make demo     predict how the sample mug hangs on the sample hook, plan a path, simulate it and draw it"
 	@echo "make test     run all checks and tests"
 	@echo "make bench    measure time and memory"
 	@echo "make peer     compare time and poses with another implementation: PEER=peer.py [MESHES=folder]"
@@ -23,8 +23,9 @@ setup:
 
 demo: setup
 	@mkdir -p build
-	cargo run --release -p hangpose -- predict --object samples/mug.obj --supporter samples/hook.ply --json build/demo.json
-	@echo "The poses are in build/demo.json. Simulation of each pose in Bullet:"
+	cargo run --release -p hangpose -- predict --object samples/mug.obj --supporter samples/hook.ply \
+		--plan --start samples/mug_start.json --json build/demo.json
+	@echo "The poses and the path are in build/demo.json. Simulation in Bullet:"
 	cargo run --release -p host-tests --bin drop -- --object samples/mug.obj --supporter samples/hook.obj --poses build/demo.json --picture build/demo.png
 
 test: setup

@@ -1,6 +1,7 @@
 //! Writes the files of `samples/`, with the same bytes on every machine. With `--check` it only compares them.
 //!
-//! All shapes are meshes in metres with z up. The supporters are also written as point clouds.
+//! All shapes are meshes in metres with z up. The supporters are also written as point clouds. The start of the path in
+//! `make demo` is a pose as `hangpose predict --start` reads it.
 
 mod shapes;
 
@@ -15,6 +16,9 @@ use shapes::{Body, line};
 
 /// Named closed bodies, which may overlap.
 type Mesh = Vec<(&'static str, Body)>;
+
+/// The mug upright, in front of the hook and below it, with the handle towards the wall: its pose in the hook's frame.
+const MUG_START: &str = "{\"position\": [0.22, 0, -0.16], \"quaternion_xyzw\": [0, 0, 1, 0]}\n";
 
 /// A mug of 3.5 dl. The cup stands on z = 0 about the z axis; the handle is on the side of +x.
 fn mug() -> Mesh {
@@ -189,6 +193,7 @@ fn main() -> ExitCode {
     };
     let files = [
         ("mug.obj", obj(&mug())),
+        ("mug_start.json", MUG_START.into()),
         ("scissors.obj", obj(&scissors())),
         ("hook.obj", obj(&hook())),
         ("hook.ply", cloud(&hook(), 1)),

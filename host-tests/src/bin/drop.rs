@@ -1,10 +1,13 @@
-//! Simulates the release of an object at its predicted poses in Bullet, prints the verdicts, and draws a picture.
+//! Simulates the release of an object at its predicted poses in Bullet, replays the path to one of them, prints the
+//! verdicts, and draws a picture.
 
 use anyhow::{Context, Result, ensure};
 use clap::Parser;
 use hangpose::files::read_mesh;
 use hangpose::geometry::Pose;
-use host_tests::gallery;
+use hangpose::motion::{Path, Waypoint};
+use host_tests::gallery::{self, Way};
+use host_tests::judge::replay::replay;
 use host_tests::judge::{Bullet, Judge, Scene};
 use host_tests::solid::Solid;
 use nalgebra::{Quaternion, Translation3, UnitQuaternion};
@@ -23,7 +26,8 @@ struct Arguments {
     /// Output of `hangpose predict --json`.
     #[arg(long, value_name = "JSON")]
     poses: PathBuf,
-    /// File for the picture of the first pose that hangs, or of the best pose if none does.
+    /// File for the picture of the path. Without a path it shows the first pose that hangs, or the best pose if none
+    /// does.
     #[arg(long, value_name = "PNG")]
     picture: PathBuf,
 }
@@ -37,6 +41,33 @@ struct Prediction {
 struct PredictedPose {
     position: [f32; 3],
     quaternion_xyzw: [f32; 4],
+    path: Option<PlannedPath>,
+}
+
+/// The path of the object. A gripper is not replayed.
+#[derive(Deserialize)]
+struct PlannedPath {
+    waypoints: Vec<PlannedWaypoint>,
+    release: usize,
+    clearance: f32,
+}
+
+#[derive(Deserialize)]
+struct PlannedWaypoint {
+    seconds: f32,
+    position: [f32; 3],
+    quaternion_xyzw: [f32; 4],
+}
+
+fn pose(position: [f32; 3], quaternion_xyzw: [f32; 4]) -> Pose {
+    let rotation = UnitQuaternion::from_quaternion(Quaternion::from(quaternion_xyzw));
+    Pose::from_parts(Translation3::from(position), rotation)
+}
+
+impl From<&PlannedWaypoint> for Waypoint {
+    fn from(&PlannedWaypoint { seconds, position, quaternion_xyzw }: &PlannedWaypoint) -> Self {
+        Self { seconds, pose: pose(position, quaternion_xyzw) }
+    }
 }
 
 fn main() -> Result<()> {
@@ -54,8 +85,7 @@ fn main() -> Result<()> {
     let scene = Scene::new(&object, &supporter);
     let mut best = None;
     for (rank, predicted) in (1..).zip(&prediction.poses) {
-        let rotation = UnitQuaternion::from_quaternion(Quaternion::from(predicted.quaternion_xyzw));
-        let release = Pose::from_parts(Translation3::from(predicted.position), rotation);
+        let release = pose(predicted.position, predicted.quaternion_xyzw);
         let verdict = Bullet::default().judge(&scene, &release);
         let words = match (verdict.clear, verdict.holds, verdict.honest, verdict.robust) {
             (false, ..) => "penetrates the supporter",
@@ -72,10 +102,36 @@ fn main() -> Result<()> {
             break;
         }
     }
-    if let Some((release, rest)) = best {
-        gallery::write(&arguments.picture, &object, &supporter, &release, &rest)
-            .with_context(|| arguments.picture.display().to_string())?;
-        println!("at release and at rest: {}", arguments.picture.display());
+    let picture = || arguments.picture.display().to_string();
+    let planned =
+        (1..).zip(&prediction.poses).find_map(|(rank, predicted)| Some((rank, predicted.path.as_ref()?)));
+    if let Some((rank, planned)) = planned {
+        let waypoints: Vec<Waypoint> = planned.waypoints.iter().map(Waypoint::from).collect();
+        let last = waypoints
+            .last()
+            .with_context(|| format!("{}: the path to pose {rank} has no waypoints", at()))?;
+        let path =
+            Path { object: &waypoints, release: planned.release, gripper: &[], clearance: planned.clearance };
+        let centre = scene.centre_of_mass();
+        let replayed = replay(&scene, &path, None, centre);
+        println!(
+            "path to pose {rank}: {} waypoints, {:.1} s, clearance {:.1} mm; \
+             deepest penetration in the replay {:.2} mm: {}",
+            waypoints.len(),
+            last.seconds,
+            path.clearance * 1000.0,
+            replayed.depth() * 1000.0,
+            if replayed.passes() { "passes" } else { "does not pass" },
+        );
+        let poses: Vec<Pose> = waypoints.iter().map(|waypoint| waypoint.pose).collect();
+        let way = Way { poses: &poses, centre };
+        let rest = replayed.verdict.figures.rest;
+        gallery::write_way(&arguments.picture, &object, &supporter, &way, &rest).with_context(picture)?;
+        println!("the object along the path and at rest: {}", picture());
+        ensure!(replayed.passes(), "the path to pose {rank} does not pass the replay");
+    } else if let Some((release, rest)) = best {
+        gallery::write(&arguments.picture, &object, &supporter, &release, &rest).with_context(picture)?;
+        println!("at release and at rest: {}", picture());
     }
     Ok(())
 }
