@@ -1,7 +1,8 @@
 //! The errors of the functions that take depth images. They are apart from [`Failure`], so that a program without depth
 //! images does not link their texts.
 
-use crate::failure::{Failure, Place, Reason};
+use crate::failure::{Failure, Reason};
+use crate::place::Place;
 use crate::status::*;
 use core::fmt::{Display, Formatter};
 use hangpose_core::memory::OutOfMemory;

@@ -1,4 +1,5 @@
-use crate::failure::{Place, Reason};
+use crate::failure::Reason;
+use crate::place::Place;
 use crate::status::{hangpose_status, status_text};
 use core::ffi::c_char;
 use core::fmt::Write;

@@ -26,10 +26,12 @@ mod many;
 mod mesh;
 mod monitor;
 mod motion;
+mod motion_place;
 mod object;
 #[cfg(feature = "archive")]
 mod panic;
 mod params;
+mod place;
 mod plan;
 mod plan_failure;
 mod pose;

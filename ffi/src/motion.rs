@@ -1,12 +1,12 @@
 use crate::border::{DETAIL, Public, Region, check, check_size, elements, keep_apart, report};
 use crate::detail::hangpose_detail;
-use crate::failure::{Failure, Place};
+use crate::failure::Failure;
 use crate::pose::checked_pose;
 use crate::status::*;
 use core::ffi::c_void;
 use hangpose_core::geometry::{Aabb, Pose};
 use hangpose_core::hanging::Distance;
-use hangpose_core::motion::{Capsule, Gripper, Motion, MotionError, Speed};
+use hangpose_core::motion::{Capsule, Gripper, Motion, Speed};
 
 /// Greatest number of parts of a gripper, hangpose_motion.part_count.
 pub const HANGPOSE_MAX_PARTS: usize = 64;
@@ -243,40 +243,6 @@ impl hangpose_motion {
 
 /// Name of the array of parts in messages.
 const PARTS: &str = "motion.parts";
-
-/// Where in a motion the error is.
-pub(crate) fn motion_place(error: MotionError) -> Place {
-    match error {
-        // The start was checked before.
-        MotionError::Start => Place::of("motion.has_start"),
-        MotionError::Part { part } => Place { index: Some(part), ..Place::of(PARTS) },
-        MotionError::NoParts => Place::of("motion.part_count"),
-        MotionError::Retreat => Place::of("motion.retreat"),
-        MotionError::Workspace => Place::of("motion.workspace_low"),
-        MotionError::Value { name, value, max } => {
-            Place::of(field(name)).value(f64::from(value)).range([0.0, f64::from(max)])
-        }
-        MotionError::Count { name, value, min, max } => {
-            Place::of(field(name)).value(value as f64).range([min as f64, max as f64])
-        }
-    }
-}
-
-/// The field in C for a field of the core.
-fn field(name: &str) -> &'static str {
-    match name {
-        "clearance" => "motion.clearance",
-        "step.position" => "motion.step_position",
-        "step.rotation" => "motion.step_rotation",
-        "speed.linear" => "motion.speed",
-        "speed.angular" => "motion.angular_speed",
-        "speed.linear_acceleration" => "motion.acceleration",
-        "speed.angular_acceleration" => "motion.angular_acceleration",
-        "samples" => "motion.samples",
-        "nodes" => "motion.nodes",
-        _ => "motion",
-    }
-}
 
 #[cfg(test)]
 mod tests {

@@ -1,6 +1,7 @@
 use crate::detail::HANGPOSE_NO_INDEX;
-use crate::failure::{Failure, Place};
+use crate::failure::Failure;
 use crate::kind::{hangpose_kind, kind};
+use crate::place::Place;
 use hangpose_core::geometry::{MAX_COORDINATE, Pose, Vector};
 use hangpose_core::hanging::HangingPose;
 use hangpose_core::hanging::sites::{Cost, SiteMatch};

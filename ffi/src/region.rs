@@ -1,5 +1,6 @@
 use crate::border::{Region, elements, rows};
-use crate::failure::{Failure, Place};
+use crate::failure::Failure;
+use crate::place::Place;
 use hangpose_core::geometry::MAX_COORDINATE;
 use hangpose_core::hanging::{self, RegionError};
 

@@ -1,9 +1,10 @@
 use crate::border::{DETAIL, Public, Region, check, check_size, elements, inputs, keep_apart, report, rows};
 use crate::detail::hangpose_detail;
-use crate::failure::{Failure, HungFault, ObjectFault, Place};
+use crate::failure::{Failure, HungFault, ObjectFault};
 use crate::handle::Shared;
 use crate::kind::{hangpose_kind, kinds, mask};
 use crate::object::{HANGPOSE_MAX_FOLD, ObjectHandle, hangpose_object, hangpose_symmetry};
+use crate::place::Place;
 use crate::pose::pose_of;
 use crate::region::{BY, ON, hangpose_region, region_place};
 use crate::status::*;
