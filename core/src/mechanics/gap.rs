@@ -17,7 +17,7 @@ pub(crate) enum Gap {
         /// Gradient of the signed distance of the body there: of unit length, or zero where it is undefined.
         gradient: Vector,
     },
-    /// Nothing of the patch is closer than this, metres; it may be farther away.
+    /// The patch is farther away than this, metres, or what of it is closer lies on another patch as well.
     Beyond(f32),
 }
 

@@ -256,17 +256,18 @@ impl<'a> Planner<'_, 'a, '_> {
             goal: *goal,
             random: Random::new(motion.seed),
             met: [0; 2],
-            counts: self.counts,
+            sampled: 0,
+            budget: motion.samples,
+            has_left: false,
             step: motion.step,
         };
-        let (mut scratch, mut left) = (scratch, motion.samples);
+        let mut scratch = scratch;
         loop {
             // The proof that there is no way costs as much as many samples, and most ways are found with few.
-            let samples = if scratch.is_some() { left.min(SAMPLES_BEFORE_PROOF) } else { left };
-            let before = search.counts.samples;
-            let outcome = search.run(samples, found, permit, self.meter);
-            left -= search.counts.samples - before;
-            self.counts.samples = search.counts.samples;
+            let most = if scratch.is_some() { SAMPLES_BEFORE_PROOF } else { usize::MAX };
+            let before = search.sampled;
+            let outcome = search.run((motion.samples - before).min(most), found, permit, self.meter);
+            self.counts.samples += search.sampled - before;
             self.counts.nodes = nodes + search.trees.iter().map(|tree| tree.nodes().len()).sum::<usize>();
             match outcome? {
                 Outcome::Found => {}
@@ -279,7 +280,7 @@ impl<'a> Planner<'_, 'a, '_> {
                     }
                     // A narrow place on the way has less room than the ends have.
                     search.required = search.required.min(NARROW);
-                    if left == 0 {
+                    if search.sampled == motion.samples {
                         return Err(PlanFailure::BudgetUsedUp { samples: motion.samples }.into());
                     }
                     continue;

@@ -40,7 +40,7 @@ impl Search<'_, '_, '_> {
             let at = Vector::from([(); 3].map(|()| self.random.next_f32()));
             self.region.min + self.region.extents().component_mul(&at)
         };
-        let shares = if self.counts.samples < WIDER_AFTER {
+        let shares = if self.sampled < WIDER_AFTER {
             ROTATED_AS_GOAL
         } else {
             ROTATED_AS_GOAL.map(|share| 0.4 * share)

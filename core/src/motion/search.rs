@@ -4,7 +4,6 @@
 //! branch that is blocked does not end, but turns aside along what blocks it, as a hand feels its way out.
 
 use super::failure::Obstacle;
-use super::path::PlanCounts;
 use super::permit::Permit;
 use super::placement::{Leg, Placement};
 use super::route::Route;
@@ -65,7 +64,12 @@ pub(super) struct Search<'q, 'a, 's> {
     pub(super) region: Aabb,
     pub(super) goal: Placement,
     pub(super) random: Random,
-    pub(super) counts: PlanCounts,
+    /// Poses sampled.
+    pub(super) sampled: usize,
+    /// Poses that may be sampled, all in all: shown as progress.
+    pub(super) budget: usize,
+    /// Whether the first ways from the goal have been tried.
+    pub(super) has_left: bool,
     /// Largest distance between two poses that the caller is asked about.
     pub(super) step: Distance,
 }
@@ -91,15 +95,16 @@ impl Search<'_, '_, '_> {
         meter: &mut Meter,
     ) -> Result<Outcome, Stop> {
         let starts = self.starts();
-        if self.counts.samples == 0 && self.leave_goal(route, permit, meter)? {
+        if !core::mem::replace(&mut self.has_left, true) && self.leave_goal(route, permit, meter)? {
             return Ok(Outcome::Found);
         }
         for _ in 0..samples {
             if self.trees.iter().any(Tree::is_full) {
                 return Ok(Outcome::Full);
             }
-            let index = self.counts.samples;
-            self.counts.samples += 1;
+            let index = self.sampled;
+            self.sampled += 1;
+            meter.progress(index as f32 / self.budget as f32);
             let target = self.sample(starts);
             // Two of three samples are for the tree of the goal, which is the one in narrow places.
             let grown = if index % 3 == 2 { START } else { GOAL };

@@ -282,8 +282,9 @@ impl<'a> Space<'a> {
         Ok(())
     }
 
-    /// How far a motion from a place keeps at least `required` metres from everything. In between the poses that are tested, the
-    /// distance is at least half of that: no step moves any point by more than what is left.
+    /// How far a motion from a place keeps at least `required` metres from everything, at the poses that are tested. No step between
+    /// them moves any point farther than half of that would be left, or than [`LEAST_STEP`]: certain is only what
+    /// [`certify`](super::certify) has tested.
     pub(super) fn way(
         &mut self,
         from: &Placement,
