@@ -36,6 +36,10 @@ const FACING: f32 = 0.5;
 /// Distance from the object halfway between two points of it, in neighbouring cells, up to which they are joined, as a share of a
 /// cell: what is bent lies beside its chord.
 const BESIDE_CHORD: f32 = 0.15;
+/// Share of a depth below the surface at which a point is that far from the surface all around: what is round is a little closer.
+const THICK: f32 = 0.8;
+/// Share of the points of a curve at which the object must be thick: at an edge of the mesh the way inwards is not well defined.
+const MOST: f32 = 0.9;
 /// Most points of the curve in the object.
 const MAX_CURVE: usize = 4 * CELLS;
 /// Distance within which object and supporter touch, metres: more than that of a release pose.
@@ -77,20 +81,35 @@ pub(super) fn link(
             if !grid.curve_around(pose, touch, &bar, &mut curve, arena.scratch(), meter)? {
                 continue;
             }
-            if goes_through(
-                support,
-                touch,
-                (reach, &is_outside),
-                (&curve, grid.cell),
-                arena.scratch(),
-                meter,
-            )? {
+            let thick = curve.iter().filter(|point| is_thick(body, &(to_object * **point), reach)).count();
+            if thick as f32 >= MOST * curve.len() as f32
+                && goes_through(
+                    support,
+                    touch,
+                    (reach, &is_outside),
+                    (&curve, grid.cell),
+                    arena.scratch(),
+                    meter,
+                )?
+            {
                 return Ok(Some(reach.max(2.0 * grid.between)));
             }
             break;
         }
     }
     Ok(None)
+}
+
+/// Whether the object is at least as thick, at a point of its surface, as the gaps that are taken as closed: anything thinner could
+/// pass through them.
+fn is_thick(body: &Body, point: &Point, gap: f32) -> bool {
+    let (_, gradient) = body.field.sample(point);
+    let half = 0.5 * gap;
+    // The point is on the surface or in the cell below it. Deep inside, the field understates distances, so that the mesh is asked.
+    [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().any(|depth| {
+        let at = point - gradient * (depth * half);
+        body.field.distance(&at) < 0.0 && (body.surface.closest_point(&at) - at).norm() > THICK * half
+    })
 }
 
 type Curve = heapless::Vec<Point, MAX_CURVE>;
