@@ -1,7 +1,7 @@
 //! Things that the object must not touch: points of a scene, and other objects.
 
 use super::Body;
-use crate::geometry::{Point, Pose, Surface};
+use crate::geometry::{Point, Pose, Surface, halves};
 use crate::monitor::{Meter, Stop};
 
 /// Most halvings of a triangle until it is as small as the clearance is tested.
@@ -83,16 +83,9 @@ fn is_clear_of_triangle(body: &Body, triangle: [Point; 3], clearance: f32, queri
         if radius < SMALLEST_PIECE || waiting.len() + 2 > MAX_HALVINGS {
             continue;
         }
-        // Across the longest side.
-        let sides = [(a - b).norm_squared(), (b - c).norm_squared(), (c - a).norm_squared()];
-        let [a, b, c] = match sides {
-            [ab, bc, ca] if ab >= bc && ab >= ca => [a, b, c],
-            [_, bc, ca] if bc >= ca => [b, c, a],
-            _ => [c, a, b],
-        };
-        let middle = nalgebra::center(&a, &b);
-        let _ = waiting.push([a, middle, c]);
-        let _ = waiting.push([middle, b, c]);
+        for half in halves([a, b, c]) {
+            let _ = waiting.push(half);
+        }
     }
     true
 }

@@ -71,6 +71,18 @@ pub(crate) fn solid_angle([a, b, c]: &[Point; 3], p: &Point) -> f32 {
 /// Tangents up to this are small enough for three terms of the arc tangent's series.
 const SERIES: f32 = 0.1;
 
+/// The two halves of a triangle, cut across its longest side.
+pub(crate) fn halves([a, b, c]: [Point; 3]) -> [[Point; 3]; 2] {
+    let sides = [(a - b).norm_squared(), (b - c).norm_squared(), (c - a).norm_squared()];
+    let [a, b, c] = match sides {
+        [ab, bc, ca] if ab >= bc && ab >= ca => [a, b, c],
+        [_, bc, ca] if bc >= ca => [b, c, a],
+        _ => [c, a, b],
+    };
+    let middle = nalgebra::center(&a, &b);
+    [[a, middle, c], [middle, b, c]]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,7 +3,7 @@
 use super::touch::{Collector, Nearest, Touch};
 use super::track::Track;
 use super::{EXACT_UP_TO, PATCH_RANGE};
-use crate::geometry::{Aabb, Node, Point, PointTree, Pose, Surface, Vector};
+use crate::geometry::{Aabb, Node, Point, PointTree, Pose, Surface, Vector, halves};
 use crate::mechanics::{Body, Gap, Support, gap_to_patch};
 use crate::motion::failure::{Mover, Obstacle};
 use nalgebra::Rotation3;
@@ -173,16 +173,9 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
                 }
                 continue;
             }
-            // Across the longest side.
-            let sides = [(a - b).norm_squared(), (b - c).norm_squared(), (c - a).norm_squared()];
-            let [a, b, c] = match sides {
-                [ab, bc, ca] if ab >= bc && ab >= ca => [a, b, c],
-                [_, bc, ca] if bc >= ca => [b, c, a],
-                _ => [c, a, b],
-            };
-            let middle = nalgebra::center(&a, &b);
-            let _ = waiting.push([a, middle, c]);
-            let _ = waiting.push([middle, b, c]);
+            for half in halves([a, b, c]) {
+                let _ = waiting.push(half);
+            }
         }
     }
 }
