@@ -54,11 +54,8 @@ impl<'m> Clearance<'m> {
         let monitor = Monitor::new();
         let mut meter = Meter::new(&monitor);
         let nearest = self.space.nearest(&place, MAX_CLEARANCE, &mut meter);
-        nearest.map_or(f32::NEG_INFINITY, |nearest| nearest.distance).min(if room < 0.0 {
-            room
-        } else {
-            MAX_CLEARANCE
-        })
+        let distance = nearest.map_or(f32::NEG_INFINITY, |nearest| nearest.distance);
+        if room < 0.0 { distance.min(room) } else { distance }
     }
 }
 

@@ -55,8 +55,8 @@ pub(super) const fn bytes(points: usize) -> usize {
     larger(of_object, of_supporter)
 }
 
-/// Whether object and supporter are linked at a pose, which touches, or nearly touches, at `touches`. Returns the width of the gaps
-/// that are taken as closed, metres; `None` if no link is found.
+/// Whether object and supporter are linked at a placement at which they touch, or nearly so. Returns the width of the gaps that are
+/// taken as closed, metres; `None` if no link is found.
 pub(super) fn link(
     space: &mut Space,
     at: &Placement,

@@ -3,8 +3,9 @@
 use super::end::End;
 use super::failure::PlanFailure;
 use super::gripper::Gripper;
+use super::path::MAX_CLEARANCE;
 use super::placement::{Leg, Placement};
-use super::space::Space;
+use super::space::{Moving, Space};
 use crate::geometry::{Pose, Vector};
 use crate::monitor::Meter;
 
@@ -16,10 +17,10 @@ const OPENING_STEPS: u8 = 8;
 pub(super) fn open(space: &Space, at: &Placement, meter: &mut Meter) -> Result<(), End> {
     for step in 0..=OPENING_STEPS {
         let opening = f32::from(step) / f32::from(OPENING_STEPS);
-        let moving = super::space::Moving { opening, ..space.moving };
+        let moving = Moving { opening, ..space.moving };
         let obstacles = if step < OPENING_STEPS { space.obstacles.without_object() } else { space.obstacles };
         let mut space = Space::of_gripper(moving, obstacles);
-        let nearest = space.nearest(at, super::path::MAX_CLEARANCE, meter)?;
+        let nearest = space.nearest(at, MAX_CLEARANCE, meter)?;
         if let Some(touch) = nearest.touch.filter(|touch| touch.distance <= 0.0) {
             return Err(PlanFailure::GripperCannotOpen(touch.collision()).into());
         }

@@ -13,7 +13,7 @@ use super::path::{MAX_CLEARANCE, Outline, Plan, PlanCounts, Shape, Waypoint};
 use super::permit::Permit;
 use super::placement::Placement;
 use super::route::Route;
-use super::search::{Outcome, Search};
+use super::search::{GOAL, Outcome, START, Search};
 use super::shorten::shorten;
 use super::space::{Moving, Obstacles, Space};
 use super::task::Task;
@@ -205,12 +205,12 @@ impl<'a> Planner<'_, 'a, '_> {
                 return Err(PlanFailure::StartOutsideWorkspace.into());
             }
             kept = kept.min(at_start.distance);
-            room.trees[1].add(start, None, MAX_CLEARANCE);
+            room.trees[START].add(start, None, MAX_CLEARANCE);
         } else {
             let supporter = self.task.supporter.points().aabb();
             self.add_starts(space, &supporter, release, room)?;
         }
-        room.trees[0].add(*release, None, MAX_CLEARANCE);
+        room.trees[GOAL].add(*release, None, MAX_CLEARANCE);
         let required = (KEPT * kept).min(motion.clearance);
         self.search(space, required, (region, release), (room, Some(scratch)), permit)
     }
@@ -228,10 +228,10 @@ impl<'a> Planner<'_, 'a, '_> {
             if space.room_at(&place) >= 0.0
                 && space.nearest(&place, MAX_CLEARANCE, self.meter)?.distance >= clearance
             {
-                room.trees[1].add(place, None, MAX_CLEARANCE);
+                room.trees[START].add(place, None, MAX_CLEARANCE);
             }
         }
-        if room.trees[1].nodes().is_empty() {
+        if room.trees[START].nodes().is_empty() {
             return Err(PlanFailure::StartOutsideWorkspace.into());
         }
         Ok(())
@@ -287,7 +287,8 @@ impl<'a> Planner<'_, 'a, '_> {
                 }
             }
             short.copy_from(found);
-            shorten(search.space, short, (required, motion.clearance), &mut search.random, self.meter)?;
+            let kept = (search.required, motion.clearance);
+            shorten(search.space, short, kept, &mut search.random, self.meter)?;
             let is_accepted = permit.refused_leg(short, &motion.step).is_none();
             if is_accepted && let Ok(clearance) = certify(search.space, short, self.meter)? {
                 return Ok(clearance);
@@ -333,18 +334,18 @@ impl<'a> Planner<'_, 'a, '_> {
         let everything = box_around(&supporter, [rested], self.body.reach);
         let region = box_around(region, [rested], moving.reach);
         let anywhere = &mut |_: &Pose| true;
-        self.add_starts(&mut space, &everything, &at, room)?;
-        room.trees[0].add(at, None, MAX_CLEARANCE);
-        match self.search(
-            &mut space,
-            required,
-            (&region, &at),
-            (&mut *room, None),
-            &mut Permit::new(anywhere, moving.centre),
-        ) {
-            Err(End::Failure(PlanFailure::BudgetUsedUp { .. } | PlanFailure::TreesFull { .. })) => {
-                Err(PlanFailure::GripperCannotLeave.into())
-            }
+        room.trees[GOAL].add(at, None, MAX_CLEARANCE);
+        let permit = &mut Permit::new(anywhere, moving.centre);
+        let found = match self.add_starts(&mut space, &everything, &at, room) {
+            Ok(()) => self.search(&mut space, required, (&region, &at), (&mut *room, None), permit),
+            Err(end) => Err(end),
+        };
+        match found {
+            Err(End::Failure(
+                PlanFailure::BudgetUsedUp { .. }
+                | PlanFailure::TreesFull { .. }
+                | PlanFailure::StartOutsideWorkspace,
+            )) => Err(PlanFailure::GripperCannotLeave.into()),
             found => {
                 room.short.reverse();
                 found.map(|_| ())

@@ -30,8 +30,7 @@ pub const fn reachable_bytes(limits: &Limits, scene: usize, nodes: usize) -> usi
 /// Predicts poses, best first, and plans for one after another until one has a path.
 ///
 /// `poses` and `memory`, of [`reachable_bytes`], are as for [`predict`], `accepts` and `waypoints` as for
-/// [`plan`](super::plan()). `failures`
-/// has one element for each of `poses`; those of the poses without a path are set.
+/// [`plan`](super::plan()). `failures` has one element for each of `poses`; those of the poses without a path are set.
 pub fn predict_reachable<'p, 'w>(
     task: &Task,
     poses: &'p mut [HangingPose],

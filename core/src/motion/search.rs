@@ -17,7 +17,7 @@ use crate::random::Random;
 use heapless::Vec;
 
 /// Index of the tree that grows from the goal.
-const GOAL: usize = 0;
+pub(super) const GOAL: usize = 0;
 /// Index of the tree that grows from the starts.
 pub(super) const START: usize = 1;
 

@@ -104,7 +104,9 @@ impl<'s> Tree<'s> {
     ) -> Option<usize> {
         let index = self.len;
         let parent = parent.unwrap_or(index) as u32;
-        *self.nodes.get_mut(index)? = Node { placement, parent, clearance, is_dead: 0 };
+        // What comes after a node that is out of use is so, too.
+        let is_dead = self.nodes[..index].get(parent as usize).map_or(0, |parent| parent.is_dead);
+        *self.nodes.get_mut(index)? = Node { placement, parent, clearance, is_dead };
         self.order[index] = index as u32;
         self.len += 1;
         let joined = 1 << self.len.trailing_zeros();
@@ -264,5 +266,10 @@ mod tests {
         assert_eq!(tree.chain(699).last(), Some(0));
         assert_eq!([77, 154, 155, 310].map(|i| tree.nodes[i].is_dead), [1; 4]);
         assert_eq!(tree.nodes[76].is_dead, 0);
+        tree.clear(metric);
+        tree.add(placement(0), None, 0.0);
+        tree.cut_off(0);
+        tree.add(placement(1), Some(0), 0.0);
+        assert_eq!(tree.nearest(&placement(1)), None);
     }
 }

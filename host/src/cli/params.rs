@@ -1,8 +1,8 @@
 //! The constants of the method from a profile, a file and the command line.
 
-use super::{MethodArguments, Profile};
+use super::{FileArguments, MethodArguments, Profile};
 use anyhow::{Context, Result, anyhow};
-use hangpose::Params;
+use hangpose::{CentreOfMass, Params};
 use std::path::Path;
 
 impl MethodArguments {
@@ -22,6 +22,16 @@ impl MethodArguments {
         }
         if let Some(seed) = self.seed {
             params.seed = seed;
+        }
+        Ok(params)
+    }
+
+    /// The same about the centre of mass that the options give, if they do.
+    pub(super) fn params_for(&self, files: &FileArguments) -> Result<Params> {
+        let mut params = self.params()?;
+        if let Some(com) = files.com {
+            params.centre_of_mass = CentreOfMass::Given(com.map(|x| x as f32));
+            params.validate().context("--com")?;
         }
         Ok(params)
     }

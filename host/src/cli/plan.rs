@@ -7,10 +7,10 @@ use super::source::Source;
 use super::terminal::{self, say};
 use super::{PlanArguments, input, pose_file, progress};
 use anyhow::{Result, ensure};
+use hangpose::Monitor;
 use hangpose::hanging::{Object, Request, Supporter};
 use hangpose::memory::Limits;
 use hangpose::motion::{Plan, Task, Waypoint, plan, plan_bytes};
-use hangpose::{CentreOfMass, Monitor};
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -20,10 +20,7 @@ const NO_PATH: u8 = 3;
 
 pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode> {
     let start = Instant::now();
-    let mut params = arguments.method.params()?;
-    if let Some(com) = arguments.files.com {
-        params.centre_of_mass = CentreOfMass::Given(com.map(|x| x as f32));
-    }
+    let params = arguments.method.params_for(&arguments.files)?;
     ensure!(
         params.voxels > 0,
         "without a distance field nothing can be planned: pass --profile default, or voxels in the --params file"

@@ -10,7 +10,7 @@ use super::planned::Planned;
 use super::source::Source;
 use super::terminal::{self, say};
 use super::{PredictArguments, progress};
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use hangpose::geometry::{Aabb, Cloud, Mesh, Point};
 use hangpose::hanging::sites::{Cost, SiteMatch};
 use hangpose::hanging::{
@@ -20,7 +20,7 @@ use hangpose::hanging::{
 use hangpose::mechanics::Unseen;
 use hangpose::memory::Limits;
 use hangpose::motion::{Task, Waypoint, predict_reachable, reachable_bytes};
-use hangpose::{CentreOfMass, Monitor, Params};
+use hangpose::{Monitor, Params};
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -31,11 +31,7 @@ const REJECTED: u8 = 3;
 pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     let start = Instant::now();
     // The cheapest checks come first, so that a mistake is reported at once: constants, output file, object, supporter.
-    let mut params = arguments.method.params()?;
-    if let Some(com) = arguments.files.com {
-        params.centre_of_mass = CentreOfMass::Given(com.map(|x| x as f32));
-        params.validate().context("--com")?;
-    }
+    let params = arguments.method.params_for(&arguments.files)?;
     arguments.request.check(&params)?;
     if arguments.plan {
         ensure!(
