@@ -14,6 +14,7 @@ use crate::params::Params;
 
 /// Outcome of the release of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum Fate {
     /// The object rests on the supporter.
     Rests,
