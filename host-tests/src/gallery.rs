@@ -13,7 +13,7 @@ const WIDTH: u32 = 720;
 const EYE: [f32; 3] = [0.75, -0.55, 0.37];
 /// Direction to the camera in the picture of a way: more from the side, so that a way to the wall does not hide its
 /// end.
-const ASIDE: [f32; 3] = [0.50, -0.78, 0.32];
+pub(crate) const ASIDE: [f32; 3] = [0.50, -0.78, 0.32];
 /// How much the object at release hides of what is behind it.
 const RELEASED: f32 = 0.35;
 
@@ -47,7 +47,7 @@ pub fn write_way(path: &Path, object: &Solid, supporter: &Solid, way: &Way, rest
     std::fs::write(path, picture.png(WIDTH))
 }
 
-fn mesh_of(solid: &Solid) -> TriMesh {
+pub(crate) fn mesh_of(solid: &Solid) -> TriMesh {
     let vertices = solid.vertices.iter().map(|&v| v.into()).collect();
     TriMesh::new(vertices, solid.triangles.clone()).expect("a shape has triangles")
 }

@@ -53,6 +53,17 @@ pub struct Picture<'a> {
     bodies: Vec<Body<'a>>,
     lines: Vec<(Vec<Point>, Colour)>,
     dots: Vec<(Point, Colour)>,
+    kept_in_view: Vec<Point>,
+}
+
+/// The pixels of a picture, row by row from the top.
+pub struct Pixels {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Number of rows.
+    pub height: u32,
+    /// Red, green and blue of each pixel.
+    pub rgb: Vec<u8>,
 }
 
 /// A shape with a colour.
@@ -91,7 +102,7 @@ impl<'a> Picture<'a> {
         let back = turned(Vector::from(eye).normalize());
         let right = turned(Vector::z()).cross(back).normalize();
         let camera = Camera { right, up: back.cross(right), back };
-        Self { camera, bodies: vec![], lines: vec![], dots: vec![] }
+        Self { camera, bodies: vec![], lines: vec![], dots: vec![], kept_in_view: vec![] }
     }
 
     /// Adds a mesh at a pose. `opacity` is how much it hides of what is behind it, 0 to 1.
@@ -144,8 +155,18 @@ impl<'a> Picture<'a> {
         self.dots.push((point, colour));
     }
 
+    /// Shows at least these points, of which nothing is drawn: for pictures that follow one another.
+    pub fn keep_in_view(&mut self, points: impl IntoIterator<Item = Point>) {
+        self.kept_in_view.extend(points);
+    }
+
     /// The picture as PNG, so many pixels wide.
     pub fn png(&self, width: u32) -> Vec<u8> {
+        self.pixels(width).png()
+    }
+
+    /// The picture, so many pixels wide.
+    pub fn pixels(&self, width: u32) -> Pixels {
         let frame = self.frame();
         let pixel = (frame.high[0] - frame.low[0]) / width as f32;
         let height =
@@ -168,7 +189,7 @@ impl<'a> Picture<'a> {
             dot.map(|(_, colour)| *colour)
                 .or_else(|| lines.iter().find(|(line, _)| is_on(line)).map(|(_, colour)| *colour))
         };
-        let mut bytes = Vec::with_capacity(3 * (width * height) as usize);
+        let mut rgb = Vec::with_capacity(3 * (width * height) as usize);
         for y in 0..height {
             for x in 0..width {
                 let mut sum = [0.0; 3];
@@ -180,10 +201,10 @@ impl<'a> Picture<'a> {
                     });
                     sum = [0, 1, 2].map(|i| sum[i] + seen[i]);
                 }
-                bytes.extend(sum.map(|c| (255.0 * c / (FINE * FINE) as f32) as u8));
+                rgb.extend(sum.map(|c| (255.0 * c / (FINE * FINE) as f32) as u8));
             }
         }
-        encoded(width, height, &bytes)
+        Pixels { width, height, rgb }
     }
 
     /// All that the picture shows, with a margin.
@@ -202,11 +223,10 @@ impl<'a> Picture<'a> {
                 Shape::Cloud { points, .. } => points.iter().for_each(|&point| include(point)),
             }
         }
-        self.lines
-            .iter()
-            .flat_map(|(line, _)| line)
-            .chain(self.dots.iter().map(|(dot, _)| dot))
-            .for_each(|&point| include(math::Vector::from_array(point.into())));
+        let marks = self.lines.iter().flat_map(|(line, _)| line).chain(self.dots.iter().map(|(dot, _)| dot));
+        for &point in marks.chain(&self.kept_in_view) {
+            include(math::Vector::from_array(point.into()));
+        }
         let Frame { low, high } = frame;
         let margin = MARGIN * (high[0] - low[0]).max(high[1] - low[1]);
         Frame { low: low.map(|x| x - margin), high: high.map(|x| x + margin) }
@@ -293,7 +313,7 @@ fn spread(way: &[Pose], mesh: &TriMesh, centre: &Point) -> Vec<Pose> {
 }
 
 /// The pose at a share of the way between two poses: the centre moves straight, and the body turns about a fixed axis.
-fn between(from: &Pose, to: &Pose, centre: &Point, share: f32) -> Pose {
+pub fn between(from: &Pose, to: &Pose, centre: &Point, share: f32) -> Pose {
     let turn = (to.rotation * from.rotation.inverse()).scaled_axis();
     let rotation = nalgebra::UnitQuaternion::new(turn * share) * from.rotation;
     let at = from * centre + (to * centre - from * centre) * share;
@@ -320,13 +340,16 @@ fn distance(point: [f32; 2], [from, to]: [[f32; 2]; 2]) -> f32 {
     (away - along * share).norm()
 }
 
-fn encoded(width: u32, height: u32, pixels: &[u8]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, width, height);
-    encoder.set_color(ColorType::Rgb);
-    encoder.set_depth(BitDepth::Eight);
-    let mut writer = encoder.write_header().expect("memory takes any header of a picture that has pixels");
-    writer.write_image_data(pixels).expect("there are as many bytes as the size says");
-    drop(writer);
-    bytes
+impl Pixels {
+    fn png(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut encoder = Encoder::new(&mut bytes, self.width, self.height);
+        encoder.set_color(ColorType::Rgb);
+        encoder.set_depth(BitDepth::Eight);
+        let mut writer =
+            encoder.write_header().expect("memory takes any header of a picture that has pixels");
+        writer.write_image_data(&self.rgb).expect("there are as many bytes as the size says");
+        drop(writer);
+        bytes
+    }
 }
