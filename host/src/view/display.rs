@@ -55,6 +55,6 @@ pub(super) fn thinned(count: usize, most: usize) -> impl Iterator<Item = usize> 
 pub(super) fn shown_points(cloud: &Cloud) -> (Vec<[f32; 3]>, Vec<[f32; 3]>) {
     let points = cloud.points();
     let kept = thinned(points.len(), MAX_POINTS);
-    let normals = cloud.normals().map(|normals| kept.clone().map(|index| normals[index].into()).collect());
+    let normals = cloud.normals().map(|normals| kept.clone().map(|index| normals[index]).collect());
     (kept.map(|index| points[index].into()).collect(), normals.unwrap_or_default())
 }
