@@ -125,7 +125,7 @@ pub(crate) fn hand<'a>(gripper: &'a Solid, obstacles: &'a Solid) -> Scene<'a> {
 }
 
 /// The pose at a share `t` of the way between two poses: `centre` moves straight, and the body turns about a fixed axis.
-fn between(from: &Isometry3<f64>, to: &Isometry3<f64>, centre: &Point3<f64>, t: f64) -> Isometry3<f64> {
+pub fn between(from: &Isometry3<f64>, to: &Isometry3<f64>, centre: &Point3<f64>, t: f64) -> Isometry3<f64> {
     let turn = (to.rotation * from.rotation.inverse()).scaled_axis();
     let rotation = UnitQuaternion::new(turn * t) * from.rotation;
     let (start, end) = (from * centre, to * centre);
