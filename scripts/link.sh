@@ -16,7 +16,10 @@ quiet() { "$@" >quiet.log 2>&1 || { cat quiet.log >&2; fail "failed: $*"; }; }
 
 # ---- build and install, with a prefix other than that of the build
 cp -r "$root/examples-c" "$root/ffi/tests" "$root/samples" .
-quiet make -C "$root" lib install DESTDIR="$here/root" PREFIX=/opt/hangpose
+# The command of the tests stands for the one that `make command` builds with the same sources and more optimisation.
+target=${CARGO_TARGET_DIR:-$root/target}
+quiet cargo build --manifest-path "$root/Cargo.toml" -p hangpose
+quiet make -C "$root" lib command install COMMAND="$target/debug/hangpose" DESTDIR="$here/root" PREFIX=/opt/hangpose
 prefix=$here/root/opt/hangpose
 archive=$prefix/lib/libhangpose.a
 shared=$prefix/lib/libhangpose.so
