@@ -41,6 +41,8 @@ test: setup
 	cargo run -p hangpose-ffi --example header -- --check
 	scripts/bare-metal.sh
 	scripts/link.sh
+	scripts/colcon.sh
+	scripts/packages.sh
 
 bench: setup
 	cargo bench --workspace
@@ -128,6 +130,13 @@ deb: $(if $(COMMAND),,build_command)
 	cmake -S . -B build/deb -DCMAKE_INSTALL_PREFIX=/usr -DHANGPOSE_CARGO_DIR=$(cargo_dir) -DHANGPOSE_COMMAND=$(command_file)
 	cmake --build build/deb
 	cd build/deb && cpack -B $(CURDIR)/build
+
+dist:
+	@scripts/setup.sh dist
+	scripts/dist.sh
+
+abi: lib
+	scripts/abi.sh --write
 
 samples: setup
 	cargo run --release -p host-tests --example samples
