@@ -128,7 +128,7 @@ install:
 
 deb: $(if $(COMMAND),,build_command)
 	cmake -S . -B build/deb -DCMAKE_INSTALL_PREFIX=/usr -DHANGPOSE_CARGO_DIR=$(cargo_dir) -DHANGPOSE_COMMAND=$(command_file)
-	cmake --build build/deb
+	cmake --build build/deb --target all hangpose_command
 	cd build/deb && cpack -B $(CURDIR)/build
 
 dist:

@@ -39,6 +39,7 @@ pack() {
     cmake -S . -B "$work/$name" -DCMAKE_INSTALL_PREFIX=/ -DCMAKE_INSTALL_LIBDIR=lib \
         -DHANGPOSE_CARGO_DIR="$CARGO_TARGET_DIR/link" "$@" >"$work/$name.log"
     cmake --build "$work/$name"
+    [ "$crate" != hangpose ] || cmake --build "$work/$name" --target hangpose_command
     rm -rf "$work/stage/$name"
     DESTDIR=$work/stage/$name cmake --install "$work/$name" >>"$work/$name.log"
     cp LICENSE-MIT LICENSE-APACHE README.md CHANGELOG.md "$work/stage/$name/"
@@ -79,7 +80,7 @@ cmake --build "$work/examples" --target 02_mesh_file >>"$work/examples.log"
 # ---- Debian packages
 cmake -S . -B "$work/deb" -DCMAKE_INSTALL_PREFIX=/usr -DHANGPOSE_CARGO_DIR="$CARGO_TARGET_DIR/link" \
     -DHANGPOSE_COMMAND="$command" >"$work/deb.log"
-cmake --build "$work/deb"
+cmake --build "$work/deb" --target all hangpose_command
 (cd "$work/deb" && cpack -B "$dist" >>"$work/deb.log" && rm -rf "$dist/_CPack_Packages")
 
 # ---- the wheel

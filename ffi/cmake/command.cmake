@@ -1,5 +1,5 @@
 # The command hangpose, its completions for shells and its man pages. The target hangpose_command asks the command for
-# them.
+# them. It is not built with the library, which must build without the command.
 set(dir ${CMAKE_CURRENT_BINARY_DIR}/command)
 add_custom_command(
   OUTPUT ${dir}/hangpose
@@ -14,7 +14,7 @@ add_custom_command(
   DEPENDS ${HANGPOSE_COMMAND}
   COMMENT "Writing completions and man pages"
   VERBATIM)
-add_custom_target(hangpose_command ALL DEPENDS ${dir}/hangpose)
+add_custom_target(hangpose_command DEPENDS ${dir}/hangpose)
 
 # Packages of Debian have their own folder for zsh.
 set(zsh_dir site-functions)

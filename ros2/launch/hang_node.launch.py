@@ -7,6 +7,7 @@ from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
 
 
 def generate_launch_description():
@@ -24,7 +25,11 @@ def generate_launch_description():
             output="screen",
             parameters=[
                 LaunchConfiguration("config"),
-                {"object_file": LaunchConfiguration("object_file"), "frame": LaunchConfiguration("frame")},
+                # As text, whatever it looks like.
+                {
+                    name: ParameterValue(LaunchConfiguration(name), value_type=str)
+                    for name in ("object_file", "frame")
+                },
             ],
             remappings=[
                 ("supporter", LaunchConfiguration("supporter")),
