@@ -22,6 +22,8 @@ export CARGO_TARGET_DIR=$work/cargo
 export RUSTFLAGS="--remap-path-prefix=$root=hangpose --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo"
 rm -rf "$dist"
 mkdir -p "$dist" "$work"
+# Only what cargo built is kept from an earlier run.
+find "$work" -mindepth 1 -maxdepth 1 ! -name cargo -exec rm -rf {} +
 
 # ---- crates, each built from its package
 scripts/packages.sh --verify
@@ -36,12 +38,11 @@ command=$CARGO_TARGET_DIR/release/hangpose
 pack() {
     local name=hangpose-$version-linux-$1 crate=$2 target=$3
     shift 3
-    cmake -S . -B "$work/$name" -DCMAKE_INSTALL_PREFIX=/ -DCMAKE_INSTALL_LIBDIR=lib \
-        -DHANGPOSE_CARGO_DIR="$CARGO_TARGET_DIR/link" "$@" >"$work/$name.log"
+    cmake -S . -B "$work/$name" -DCMAKE_INSTALL_LIBDIR=lib -DHANGPOSE_CARGO_DIR="$CARGO_TARGET_DIR/link" \
+        "$@" >"$work/$name.log"
     cmake --build "$work/$name"
     [ "$crate" != hangpose ] || cmake --build "$work/$name" --target hangpose_command
-    rm -rf "$work/stage/$name"
-    DESTDIR=$work/stage/$name cmake --install "$work/$name" >>"$work/$name.log"
+    cmake --install "$work/$name" --prefix "$work/stage/$name" >>"$work/$name.log"
     cp LICENSE-MIT LICENSE-APACHE README.md CHANGELOG.md "$work/stage/$name/"
     scripts/licences.py "$crate" "$target" >"$work/stage/$name/LICENCES-OF-CRATES"
     tar -C "$work/stage" --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner \
@@ -62,7 +63,7 @@ fi
 
 # ---- the archives give the same result on both processors
 for arch in x86_64 aarch64; do
-    rm -rf "$work/$arch" && mkdir "$work/$arch"
+    mkdir "$work/$arch"
     tar -C "$work/$arch" --strip-components=1 -xzf "$dist/hangpose-$version-linux-$arch.tar.gz"
     $arch-linux-gnu-gcc -O2 -static -I"$work/$arch/include" examples-c/01_static_memory.c \
         "$work/$arch/lib/libhangpose.a" -lm -o "$work/$arch/01"
