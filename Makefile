@@ -1,5 +1,6 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo picture test bench tables meant reach calibrate peer lib install deb samples header clean
+.PHONY: help setup demo picture test bench tables meant reach calibrate peer lib command build_command install deb dist abi \
+	samples header clean
 
 help:
 	@echo "make demo     predict how the sample mug hangs on the sample hook, plan a path, simulate it and draw it"
@@ -12,8 +13,11 @@ help:
 	@echo "make reach    plan paths in several scenes, replay them in Bullet and write two sections of docs/RESULTS.md"
 	@echo "make calibrate  refit the constants of docs/PROBABILITY.md"
 	@echo "make lib      build libhangpose.a and libhangpose.so for C and C++ in build/link"
-	@echo "make install  install the libraries and headers: [PREFIX=/usr/local] [DESTDIR=...]"
-	@echo "make deb      build the Debian package build/libhangpose-dev_*.deb"
+	@echo "make command  build the command hangpose, its completions for shells and its man pages"
+	@echo "make install  install the libraries, the headers and the command: [PREFIX=/usr/local] [DESTDIR=...]"
+	@echo "make deb      build the Debian packages libhangpose3, libhangpose-dev and hangpose in build/"
+	@echo "make dist     build a release in build/dist/: archives for x86-64 and aarch64, packages, checksums"
+	@echo "make abi      store the binary interface of this version in ffi/abi/"
 	@echo "make samples  regenerate samples/"
 	@echo "make header   regenerate include/hangpose.h from ffi/"
 	@echo "make setup    install missing tools"
@@ -42,6 +46,8 @@ test: setup
 	cargo run -p hangpose-ffi --example header -- --check
 	scripts/bare-metal.sh
 	scripts/link.sh
+	scripts/colcon.sh
+	scripts/packages.sh
 
 bench: setup
 	cargo bench --workspace
@@ -100,7 +106,8 @@ header:
 	cargo run -p hangpose-ffi --example header
 
 PREFIX ?= /usr/local
-cargo_dir = $(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/link
+target_dir = $(or $(CARGO_TARGET_DIR),$(CURDIR)/target)
+cargo_dir = $(target_dir)/link
 
 # Does not depend on `setup`, which installs the tools of the tests. Needs cargo, cmake and a C compiler.
 lib:
@@ -108,15 +115,33 @@ lib:
 	cmake -S . -B build/link -DCMAKE_INSTALL_PREFIX=$(PREFIX) -DHANGPOSE_CARGO_DIR=$(cargo_dir)
 	cmake --build build/link
 
-# Builds only if the library is missing, so that another user can run it: make lib && sudo make install.
+# The command with its completions and man pages. COMMAND=file takes a command that is built already.
+command: $(if $(COMMAND),,build_command)
+	cmake -S . -B build/link -DCMAKE_INSTALL_PREFIX=$(PREFIX) -DHANGPOSE_CARGO_DIR=$(cargo_dir) -DHANGPOSE_COMMAND=$(command_file)
+	cmake --build build/link --target hangpose_command
+
+command_file = $(abspath $(or $(COMMAND),$(target_dir)/release/hangpose))
+
+build_command:
+	cargo build --locked --release -p hangpose
+
+# Builds only what is missing, so that another user can run it: make lib command && sudo make install.
 install:
 	@test -e build/link/libhangpose.a || $(MAKE) lib
+	@test -e build/link/command/hangpose || $(MAKE) command
 	cmake --install build/link --prefix $(PREFIX)
 
-deb:
-	cmake -S . -B build/deb -DCMAKE_INSTALL_PREFIX=/usr -DHANGPOSE_CARGO_DIR=$(cargo_dir)
-	cmake --build build/deb
+deb: $(if $(COMMAND),,build_command)
+	cmake -S . -B build/deb -DCMAKE_INSTALL_PREFIX=/usr -DHANGPOSE_CARGO_DIR=$(cargo_dir) -DHANGPOSE_COMMAND=$(command_file)
+	cmake --build build/deb --target all hangpose_command
 	cd build/deb && cpack -B $(CURDIR)/build
+
+dist:
+	@scripts/setup.sh dist
+	scripts/dist.sh
+
+abi: lib
+	scripts/abi.sh --write
 
 samples: setup
 	cargo run --release -p host-tests --example samples

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs the missing tools of `make test` and `make demo`. Quick if nothing is missing.
+# Installs the missing tools of `make test` and `make demo`, and with the argument `dist` those of `make dist`. Quick if
+# nothing is missing.
 set -euo pipefail
 
 as_root() {
@@ -41,6 +42,9 @@ command -v valgrind >/dev/null || missing+=(valgrind libc6-dbg)
 command -v dpkg-shlibdeps >/dev/null || missing+=(dpkg-dev)
 command -v file >/dev/null || missing+=(file)
 pkg-config --exists eigen3 2>/dev/null || missing+=(libeigen3-dev)
+# The comparison of the binary interface with the stored one, and colcon, which scripts/colcon.sh installs.
+command -v abidiff >/dev/null || missing+=(abigail-tools)
+python3 -m venv --help >/dev/null 2>&1 && python3 -m ensurepip --version >/dev/null 2>&1 || missing+=(python3-venv)
 
 if command -v rustup >/dev/null; then
     have=$(rustup component list --installed)
@@ -53,13 +57,22 @@ if ! command -v cargo >/dev/null; then
     exit 1
 fi
 
-# Bare metal: rustup's target if it is available, else Debian's compiler with the source of `core`.
-# Debian's compiler is in /usr/bin; rustup's comes first in the PATH.
-target=thumbv7em-none-eabihf
-if ! { command -v rustup >/dev/null && rustup target list --installed | grep -qx "$target"; } &&
-    ! { command -v rustup >/dev/null && rustup target add "$target" >/dev/null 2>&1; } &&
-    ! [ -e /usr/lib/rustlib/src/rust/library/core -a -x /usr/bin/rustc -a -x /usr/bin/cargo ]; then
-    missing+=(rustc-web cargo-web rust-web-src)
+# The C compiler and the emulator for aarch64.
+targets=(thumbv7em-none-eabihf)
+if [ "${1:-}" = dist ]; then
+    command -v aarch64-linux-gnu-gcc >/dev/null || missing+=(gcc-aarch64-linux-gnu libc6-dev-arm64-cross)
+    command -v qemu-aarch64 >/dev/null || missing+=(qemu-user)
+    targets+=(aarch64-unknown-linux-gnu)
 fi
+
+# Bare metal and aarch64: rustup's targets if they are available, else Debian's compiler with the source of `core`.
+# Debian's compiler is in /usr/bin; rustup's comes first in the PATH.
+for target in "${targets[@]}"; do
+    if ! { command -v rustup >/dev/null && rustup target list --installed | grep -qx "$target"; } &&
+        ! { command -v rustup >/dev/null && rustup target add "$target" >/dev/null 2>&1; } &&
+        ! [ -e /usr/lib/rustlib/src/rust/library/core -a -x /usr/bin/rustc -a -x /usr/bin/cargo ]; then
+        missing+=(rustc-web cargo-web rust-web-src)
+    fi
+done
 
 [ ${#missing[@]} = 0 ] || apt "${missing[@]}"

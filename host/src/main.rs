@@ -16,6 +16,10 @@ fn main() -> ExitCode {
         cli::Command::View(arguments) => cli::view::run(arguments),
         cli::Command::Inspect(arguments) => cli::inspect::run(arguments),
         cli::Command::Scan(arguments) => cli::scan::run(arguments),
+        cli::Command::Batch(arguments) => cli::batch::run(arguments),
+        cli::Command::Merge(arguments) => cli::batch::merge(arguments),
+        cli::Command::Completions(arguments) => cli::shell::completions(arguments),
+        cli::Command::Man(arguments) => cli::shell::man(arguments),
     };
     result.unwrap_or_else(|error| {
         // Options that do not go together, where the parser cannot tell.

@@ -1,7 +1,8 @@
 //! Writes the files of `samples/`, with the same bytes on every machine. With `--check` it only compares them.
 //!
 //! All shapes are meshes in metres with z up. The supporters are also written as point clouds. The start of the path in
-//! `make demo` is a pose as `hangpose predict --start` reads it.
+//! `make demo` is a pose as `hangpose predict --start` reads it. The depth image shows the mug to `hangpose scan`, and the
+//! pairs are those of `hangpose batch`.
 
 mod shapes;
 
@@ -9,9 +10,16 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
+use hangpose::geometry::{Point, Vector};
+use hangpose::perception::depth::DepthCamera;
+use host_tests::scan::{Sensor, Target, looking};
 use host_tests::shapes::Random;
 use host_tests::shapes::vector::{V, X, Y, Z, add, arc, cross, length, scale, sub, turn, unit};
 use host_tests::winding::Winding;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+use parry3d::math;
+use parry3d::shape::TriMesh;
 use shapes::{Body, line};
 
 /// Named closed bodies, which may overlap.
@@ -19,6 +27,55 @@ type Mesh = Vec<(&'static str, Body)>;
 
 /// The mug upright, in front of the hook and below it, with the handle towards the wall: its pose in the hook's frame.
 const MUG_START: &str = "{\"position\": [0.22, 0, -0.16], \"quaternion_xyzw\": [0, 0, 1, 0]}\n";
+
+/// Pairs of the samples, with an option of one pair in a column.
+const PAIRS: &str = "\
+id,object,supporter,object_scale
+mug on hook,mug.obj,hook.ply,
+mug on tree,mug.obj,mug_tree.ply,
+large mug on tree,mug.obj,mug_tree.ply,1.2
+scissors on hook,scissors.obj,hook.ply,
+";
+
+/// Width and height of the depth image, pixels.
+const IMAGE: [u32; 2] = [200, 150];
+/// fx and fy of the depth image, pixels.
+const FOCAL: f32 = 600.0;
+/// Direction from the mug to the camera: obliquely from above, with the handle on one side.
+const EYE: [f32; 3] = [0.4, -0.8, 0.5];
+
+/// The intrinsics of the depth image.
+fn camera_matrix() -> String {
+    let [cx, cy] = principal_point();
+    format!("{FOCAL} 0 {cx}\n0 {FOCAL} {cy}\n0 0 1\n")
+}
+
+fn principal_point() -> [f32; 2] {
+    IMAGE.map(|size| (size as f32 - 1.0) / 2.0)
+}
+
+/// A depth image in millimetres, as PNG without compression, which has the same bytes whatever wrote it.
+fn depth_image(mesh: &Mesh) -> Vec<u8> {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for (_, body) in mesh {
+        let first = vertices.len() as u32;
+        vertices.extend(body.vertices.iter().map(|v| Point::from(v.map(|x| x as f32))));
+        triangles.extend(body.triangles.iter().map(|t| t.map(|i| i as u32 + first)));
+    }
+    let target = Target::around(vertices.iter().copied(), 0.0);
+    let vertices = vertices.iter().map(|v| math::Vector::new(v.x, v.y, v.z)).collect();
+    let trimesh = TriMesh::new(vertices, triangles).expect("the mesh has triangles");
+    let camera = DepthCamera::new(IMAGE, [FOCAL; 2], principal_point(), [0.0; 5]).expect("valid");
+    let sensor = Sensor { camera, unit: 0.001, ..Sensor::perfect() };
+    let shot = sensor.take(&trimesh, &looking(&target, &Vector::from(EYE)), &mut Random::new(0));
+    let image = shot.image().expect("the mug is in the image");
+    let bytes: Vec<u8> = image.depths().iter().flat_map(|depth| depth.to_ne_bytes()).collect();
+    let mut png = Vec::new();
+    PngEncoder::new_with_quality(&mut png, CompressionType::Uncompressed, FilterType::NoFilter)
+        .write_image(&bytes, IMAGE[0], IMAGE[1], ExtendedColorType::L16)
+        .expect("a vector takes all bytes");
+    png
+}
 
 /// A mug of 3.5 dl. The cup stands on z = 0 about the z axis; the handle is on the side of +x.
 fn mug() -> Mesh {
@@ -193,7 +250,10 @@ fn main() -> ExitCode {
     };
     let files = [
         ("mug.obj", obj(&mug())),
+        ("mug_depth.png", depth_image(&mug())),
+        ("mug_camera.txt", camera_matrix().into_bytes()),
         ("mug_start.json", MUG_START.into()),
+        ("pairs.csv", PAIRS.into()),
         ("scissors.obj", obj(&scissors())),
         ("hook.obj", obj(&hook())),
         ("hook.ply", cloud(&hook(), 1)),

@@ -1,6 +1,8 @@
 //! The command line of `hangpose`, one file per subcommand.
 
+pub(crate) mod batch;
 mod counts;
+mod examples;
 mod gripper;
 mod input;
 pub(crate) mod inspect;
@@ -18,6 +20,7 @@ mod recording;
 mod request;
 pub(crate) mod scan;
 mod scene;
+pub(crate) mod shell;
 mod shown;
 mod source;
 mod terminal;
@@ -25,7 +28,9 @@ pub(crate) mod view;
 
 pub(crate) use terminal::say;
 
+use batch::{Given, Shard};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use hangpose::geometry::Aabb;
 use hangpose::hanging::MAX_HUNG;
 use motion::MotionArguments;
@@ -37,13 +42,11 @@ use std::path::PathBuf;
 
 /// Predict how to hang an object on a supporter, without training data and without a GPU.
 #[derive(Parser)]
-#[command(version, after_help = EXAMPLE)]
+#[command(version, after_help = examples::COMMAND)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
 }
-
-const EXAMPLE: &str = "Example: hangpose predict --object samples/mug.obj --supporter samples/hook.ply";
 
 const USAGE_OF_PLAN: &str = "hangpose plan --object <FILE> --supporter <FILE> --pose <FILE> [OPTIONS]
        hangpose plan --object-depth <PATTERN> --supporter-depth <PATTERN> --camera <FILE> --pose <FILE> [OPTIONS]";
@@ -60,7 +63,7 @@ pub(crate) enum Command {
     ///
     /// Exit status: 0 poses were found, and with --plan one of them has a path; 3 nothing hangs, or no pose has a path (the
     /// JSON gives the reason); 1 bad input, 2 bad usage.
-    #[command(override_usage = USAGE_OF_PREDICT)]
+    #[command(override_usage = USAGE_OF_PREDICT, after_help = examples::PREDICT)]
     Predict(Box<PredictArguments>),
     /// Plan a path without collisions to a pose in which the object hangs, or away from it.
     ///
@@ -68,7 +71,7 @@ pub(crate) enum Command {
     /// coordinates. Both frames are in metres with z up, after the options for scale and up axis are applied.
     ///
     /// Exit status: 0 a path was found, 3 there is no path (the JSON gives the reason), 1 bad input, 2 bad usage.
-    #[command(override_usage = USAGE_OF_PLAN)]
+    #[command(override_usage = USAGE_OF_PLAN, after_help = examples::PLAN)]
     Plan(Box<PlanArguments>),
     /// Show a prediction that was written before: as a page for a browser, as a picture, or both.
     ///
@@ -76,17 +79,58 @@ pub(crate) enum Command {
     /// that fell are shown only by predict --view.
     ///
     /// Exit status: 0 the page or picture was written, 1 bad input, 2 bad usage.
+    #[command(after_help = examples::VIEW)]
     View(Box<ViewArguments>),
     /// Show the analysis of one file: size, centre of mass, and contact candidates or hanging sites.
     ///
     /// Exit status: 0 the file was read, even if it has no candidates, 1 bad input, 2 bad usage.
+    #[command(after_help = examples::INSPECT)]
     Inspect(InspectArguments),
     /// Fuse depth images into the mesh or the point cloud of an object or of a scene.
     ///
     /// World coordinates are those of the poses, in metres. The mesh is open where no camera saw the surface.
     ///
     /// Exit status: 0 the mesh or cloud was written, 1 bad input, 2 bad usage.
+    #[command(after_help = examples::SCAN)]
     Scan(ScanArguments),
+    /// Predict many pairs of a table, on all processors or in shards on several computers.
+    ///
+    /// The table is a CSV file with a line for each pair. Its columns are object and supporter, paths relative to the table;
+    /// id, which is the number of the pair if it is not given; and options of predict in snake_case, such as object_scale,
+    /// supporter_up, com or allow. Several values of an option that may be repeated are separated by ;. A cell replaces what
+    /// the command line says, unless it is empty. Each object and supporter is read and analysed once.
+    ///
+    /// The result has the pairs in the order of the table: a row for each pose, best first, or one row without a pose. Its
+    /// columns are pair (the number from 1), id, object, supporter, rank, the release pose (x to qw) and the rest pose (rest_x to
+    /// rest_qw), kind, probability and the other figures of predict --json, rejection and reason if nothing hangs, warning,
+    /// and error. Lengths are metres, angles radians, quaternions have the scalar last. Cells without a value are null, or
+    /// empty in CSV. The bytes of the result do not depend on --jobs, on shards, on time, or on how often a run was
+    /// ended, so the table has no times.
+    ///
+    /// Rows that are done are kept in a journal beside the result, OUTPUT.partial, until all are. A run that was ended at any
+    /// moment goes on with --resume and loses only the pairs it was working on.
+    ///
+    /// Exit status: 0 all pairs were handled, also if some have an error (their number is printed), 1 a bad table, file of
+    /// constants or result, 2 bad usage.
+    #[command(after_help = examples::BATCH)]
+    Batch(Box<BatchArguments>),
+    /// Join the results of the shards of a batch to the result of one run, byte by byte.
+    ///
+    /// Fails if a pair of the table has no row or is in two shards. The files may have different formats.
+    ///
+    /// Exit status: 0 the result was written, 1 a bad table, shard or result, 2 bad usage.
+    #[command(after_help = examples::MERGE)]
+    Merge(MergeArguments),
+    /// Print a script that completes subcommands, options and their values in a shell.
+    ///
+    /// Exit status: 0 the script was printed, 1 it could not be, 2 bad usage.
+    #[command(after_help = examples::COMPLETIONS)]
+    Completions(CompletionsArguments),
+    /// Write a man page of the command and of each subcommand.
+    ///
+    /// Exit status: 0 the pages were written, 1 the folder cannot be written, 2 bad usage.
+    #[command(after_help = examples::MAN)]
+    Man(ManArguments),
 }
 
 #[derive(Args)]
@@ -154,7 +198,7 @@ pub(crate) struct ViewArguments {
     recording: RecordingArguments,
 }
 
-/// The files of object and supporter, and how their coordinates are meant.
+/// The files of object and supporter.
 #[derive(Args)]
 struct FileArguments {
     /// The object: a mesh (obj, stl, ply, glb, gltf).
@@ -163,6 +207,13 @@ struct FileArguments {
     /// The supporter: a point cloud (ply, pcd, xyz), or a mesh, which is sampled.
     #[arg(long, value_name = "FILE", required_unless_present_any = ["supporter_depth", "depth"])]
     supporter: Option<PathBuf>,
+    #[command(flatten)]
+    frames: FrameArguments,
+}
+
+/// How the coordinates of object and supporter are meant.
+#[derive(Args)]
+struct FrameArguments {
     /// Centre of mass of the object, in metres in the object frame (after scale and up axis).
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
     com: Option<[f64; 3]>,
@@ -172,10 +223,10 @@ struct FileArguments {
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
     object_viewpoint: Vec<[f64; 3]>,
     /// Factor from the units of the object's file to metres (0.001 for millimetres).
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_scale, conflicts_with = "object_images")]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_scale)]
     object_scale: f32,
     /// Factor from the units of the supporter's file to metres.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_scale, conflicts_with = "supporter_images")]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = parse_scale)]
     supporter_scale: f32,
     /// Axis of the object's file or images that becomes z: x, y, z, -x, -y or -z.
     #[arg(long, value_name = "AXIS", default_value = "z", value_parser = Axis::parse, allow_hyphen_values = true)]
@@ -267,6 +318,58 @@ pub(crate) struct ScanArguments {
     viewpoints: Option<PathBuf>,
 }
 
+#[derive(Args)]
+pub(crate) struct BatchArguments {
+    /// The table of pairs: CSV.
+    #[arg(value_name = "PAIRS")]
+    pairs: PathBuf,
+    /// File for the result: .parquet, .csv or .jsonl.
+    #[arg(short, long, value_name = "OUTPUT")]
+    output: PathBuf,
+    /// Number of pairs that are predicted at the same time [default: the number of processors].
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    jobs: Option<u32>,
+    /// Predict the i-th of n parts of the pairs only: consecutive ones, so that each part reads few files.
+    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = Shard::parse)]
+    shard: Shard,
+    /// Go on with a run that was ended, if there is one. The pairs, the options and the version must be the same.
+    #[arg(long)]
+    resume: bool,
+    /// Memory for objects and supporters that later pairs need again, MiB. If they take more, those that are needed last are
+    /// dropped and read again.
+    #[arg(long, value_name = "MIB", default_value_t = 1024)]
+    memory: u32,
+    #[command(flatten)]
+    given: Given,
+}
+
+#[derive(Args)]
+pub(crate) struct MergeArguments {
+    /// The table of pairs of which the shards are parts.
+    #[arg(value_name = "PAIRS")]
+    pairs: PathBuf,
+    /// The results of the shards.
+    #[arg(value_name = "SHARD", required = true)]
+    shards: Vec<PathBuf>,
+    /// File for the result: .parquet, .csv or .jsonl.
+    #[arg(short, long, value_name = "OUTPUT")]
+    output: PathBuf,
+}
+
+#[derive(Args)]
+pub(crate) struct CompletionsArguments {
+    /// The shell.
+    #[arg(value_name = "SHELL", value_enum)]
+    shell: Shell,
+}
+
+#[derive(Args)]
+pub(crate) struct ManArguments {
+    /// Folder for the pages, which is created if it is missing.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+}
+
 /// The constants of the method.
 #[derive(Args)]
 struct MethodArguments {
@@ -315,7 +418,7 @@ enum Role {
 }
 
 /// Axis of a file that becomes z.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 enum Axis {
     X,
     Y,

@@ -1,6 +1,6 @@
 //! The constants of the method from a profile, a file and the command line.
 
-use super::{FileArguments, MethodArguments, Profile};
+use super::{FrameArguments, MethodArguments, Profile};
 use anyhow::{Context, Result, anyhow};
 use hangpose::{CentreOfMass, Params};
 use std::path::Path;
@@ -27,9 +27,9 @@ impl MethodArguments {
     }
 
     /// The same about the centre of mass that the options give, if they do.
-    pub(super) fn params_for(&self, files: &FileArguments) -> Result<Params> {
+    pub(super) fn params_for(&self, frames: &FrameArguments) -> Result<Params> {
         let mut params = self.params()?;
-        if let Some(com) = files.com {
+        if let Some(com) = frames.com {
             params.centre_of_mass = CentreOfMass::Given(com.map(|x| x as f32));
             params.validate().context("--com")?;
         }

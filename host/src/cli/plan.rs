@@ -20,7 +20,7 @@ const NO_PATH: u8 = 3;
 
 pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode> {
     let start = Instant::now();
-    let params = arguments.method.params_for(&arguments.files)?;
+    let params = arguments.method.params_for(&arguments.files.frames)?;
     ensure!(
         params.voxels > 0,
         "without a distance field nothing can be planned: pass --profile default, or voxels in the --params file"
@@ -43,10 +43,10 @@ pub(crate) fn run(arguments: &PlanArguments) -> Result<ExitCode> {
     let is_text_shown =
         ![&document, &table].into_iter().any(|output| matches!(output, Some(Output::Standard)));
 
-    let mesh = object_source.object(&arguments.files)?;
-    let points = supporter_source.supporter(&arguments.files, &arguments.cloud, params.seed)?;
+    let mesh = object_source.object(&arguments.files.frames)?.shape;
+    let points = supporter_source.supporter(&arguments.files.frames, &arguments.cloud, params.seed)?.shape;
     let cloud = points.cloud()?;
-    let scene = arguments.scene.read(&arguments.files, &points)?;
+    let scene = arguments.scene.read(&arguments.files.frames, points.origin)?;
     let goal = pose_file::hanging_pose(&arguments.pose, arguments.rank, points.origin)?;
     let way = arguments.motion.read(points.origin)?;
     let motion = way.motion()?;

@@ -33,7 +33,8 @@ const REJECTED: u8 = 3;
 pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     let start = Instant::now();
     // The cheapest checks come first, so that a mistake is reported at once: constants, output file, object, supporter.
-    let params = arguments.method.params_for(&arguments.files)?;
+    let frames = &arguments.files.frames;
+    let params = arguments.method.params_for(frames)?;
     arguments.request.check(&params)?;
     if arguments.plan {
         ensure!(
@@ -67,10 +68,10 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     let is_standard = |output: &Option<Output>| matches!(output, Some(Output::Standard));
     let is_table_shown = !is_standard(&output) && !is_standard(&path_output) && !shown.uses_standard_output();
 
-    let mesh = object_source.object(&arguments.files)?;
-    let points = supporter_source.supporter(&arguments.files, &arguments.cloud, params.seed)?;
+    let mesh = object_source.object(frames)?.shape;
+    let points = supporter_source.supporter(frames, &arguments.cloud, params.seed)?.shape;
     let cloud = input::seen(&points, &arguments.cloud)?;
-    let wishes = arguments.request.read(&arguments.files, &points)?;
+    let wishes = arguments.request.read(frames, points.origin)?;
     let released = Mutex::new(Vec::new());
     let watch = |pose: &_, fate| released.lock().unwrap_or_else(PoisonError::into_inner).push((*pose, fate));
     let request = &Request { watch: result.shown.has_page().then_some(Watch(&watch)), ..wishes.request()? };
@@ -125,7 +126,9 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     seconds.total = start.elapsed().as_secs_f64();
 
     input::tell_of_cloud(supporter_source.name(), &supporter, cloud);
-    warn_of_centre_of_mass(mesh, arguments.files.com, object_source.name());
+    if let Some(warning) = warning_of_centre_of_mass(mesh, frames.com) {
+        say("warning", format_args!("{}: {warning}", object_source.name().display()));
+    }
     let mut text = table(&found, count, (mesh, cloud), &object, &supporter);
     let planned = found.planned.as_ref();
     if let Some(planned) = planned {
@@ -267,14 +270,13 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     (result, start.elapsed().as_secs_f64())
 }
 
-/// Warns of a centre of mass outside the object's bounding box, which is in another unit or another frame.
-fn warn_of_centre_of_mass(mesh: &Mesh, com: Option<[f64; 3]>, name: &Path) {
-    let (Some(com), aabb) = (com, mesh.aabb()) else { return };
+/// A warning of a centre of mass outside the object's bounding box, which is in another unit or another frame.
+pub(super) fn warning_of_centre_of_mass(mesh: &Mesh, com: Option<[f64; 3]>) -> Option<&'static str> {
+    let (com, aabb) = (com?, mesh.aabb());
     let (offset, half) = (Point::from(com.map(|x| x as f32)) - aabb.centre(), aabb.extents() / 2.0);
-    if (0..3).any(|i| offset[i].abs() > half[i]) {
-        let warning = "--com is outside the object's bounding box; give metres in the object frame, after scale and up axis";
-        say("warning", format_args!("{}: {warning}", name.display()));
-    }
+    (0..3).any(|i| offset[i].abs() > half[i]).then_some(
+        "--com is outside the object's bounding box; give metres in the object frame, after scale and up axis",
+    )
 }
 
 /// The poses as a table, or the reason why there are none, or none for the last of `count` copies.

@@ -1,4 +1,4 @@
-//! A progress bar on standard error.
+//! Progress bars on standard error.
 
 use hangpose::Monitor;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -7,6 +7,15 @@ use std::time::Duration;
 
 /// Length of the bar in steps of progress.
 const STEPS: u64 = 1000;
+
+/// A bar of how many pairs are done and how long the rest takes, hidden if standard error is not a terminal.
+pub(super) fn of_pairs(count: usize) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{bar:40} {human_pos} of {human_len} pairs, {eta} left");
+    ProgressBar::new(count as u64).with_style(style.expect("the template is valid"))
+}
 
 /// Runs `work` and, if standard error is a terminal, shows the mean progress of `monitors` until it ends.
 pub(super) fn show_while<T: Send>(monitors: &[&Monitor], work: impl FnOnce() -> T + Send) -> T {

@@ -47,13 +47,13 @@ pub(super) struct DepthArguments {
 pub(super) struct RecordingArguments {
     /// Depth images of the object, held alone: a mesh is fused from them, and what they do not show is guessed. 16-bit PNG:
     /// a path, a pattern in quotes such as 'mug/*.png', or TUM's depth.txt.
-    #[arg(long, value_name = "PATTERN", conflicts_with = "object")]
+    #[arg(long, value_name = "PATTERN", conflicts_with_all = ["object", "object_scale"])]
     object_depth: Option<String>,
     /// Depth images of the supporter, which become a point cloud. Each camera is a viewpoint.
-    #[arg(long, value_name = "PATTERN", conflicts_with = "supporter")]
+    #[arg(long, value_name = "PATTERN", conflicts_with_all = ["supporter", "supporter_scale"])]
     supporter_depth: Option<String>,
     /// Depth images that show both; masks or boxes tell the two apart.
-    #[arg(long, value_name = "PATTERN", conflicts_with_all = ["object", "supporter", "object_depth", "supporter_depth"])]
+    #[arg(long, value_name = "PATTERN", conflicts_with_all = ["object", "supporter", "object_scale", "supporter_scale", "object_depth", "supporter_depth"])]
     depth: Option<String>,
     /// Intrinsics: a 3 x 3 matrix as text, or JSON of Open3D or BOP.
     #[arg(long, value_name = "FILE", requires = "images")]

@@ -1,10 +1,9 @@
 //! The options that say how and where the object shall hang, and what it must not touch.
 
 use super::scene::SceneArguments;
-use super::{FileArguments, parse_numbers};
+use super::{FrameArguments, parse_numbers};
 use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueEnum};
-use hangpose::files::CloudFile;
 use hangpose::hanging::{Approach, Distance, Region, Request, RequestError};
 use hangpose::mechanics::{Kind, Kinds};
 use hangpose::{Candidates, Params};
@@ -152,8 +151,8 @@ impl RequestArguments {
         self.scene.file()
     }
 
-    /// Reads the scene, and moves what is in the supporter frame to the coordinates of its cloud.
-    pub(super) fn read(&self, files: &FileArguments, supporter: &CloudFile) -> Result<Wishes> {
+    /// Reads the scene, and moves what is in the supporter frame to the coordinates of its cloud, which begin at `origin`.
+    pub(super) fn read(&self, frames: &FrameArguments, origin: [f64; 3]) -> Result<Wishes> {
         let kinds = |names: &[KindName]| Kinds::of(&names.iter().map(|name| name.kind()).collect::<Vec<_>>());
         let single = |place: Option<Place>, origin: [f64; 3]| {
             place.map(|Place { at, radius }| ([[0, 1, 2].map(|i| (at[i] - origin[i]) as f32)], radius))
@@ -161,7 +160,7 @@ impl RequestArguments {
         Ok(Wishes {
             allow: if self.allow.is_empty() { Kinds::ALL } else { kinds(&self.allow) },
             prefer: kinds(&self.prefer),
-            here: single(self.here, supporter.origin),
+            here: single(self.here, origin),
             by: single(self.by, [0.0; 3]),
             by_box: self.by_box.map(|[ax, ay, az, bx, by, bz]| {
                 [[ax, ay, az], [bx, by, bz]].map(|corner| corner.map(|x| x as f32))
@@ -171,7 +170,7 @@ impl RequestArguments {
                 angle: radians(self.approach_angle),
                 length: self.approach_length,
             }),
-            scene: self.scene.read(files, supporter)?,
+            scene: self.scene.read(frames, origin)?,
             distinct: self.distinct.unwrap_or(Request::ANY.distinct),
         })
     }

@@ -1,10 +1,10 @@
 //! The option that names what stands around the supporter.
 
-use super::FileArguments;
+use super::FrameArguments;
 use super::input::{self, Placement};
 use anyhow::Result;
 use clap::Args;
-use hangpose::files::{self, CloudFile, SupporterFile};
+use hangpose::files::{self, SupporterFile};
 use std::path::{Path, PathBuf};
 
 #[derive(Args)]
@@ -21,16 +21,16 @@ impl SceneArguments {
         self.scene.as_deref()
     }
 
-    /// The points, in the coordinates of the supporter's cloud.
-    pub(super) fn read(&self, files: &FileArguments, supporter: &CloudFile) -> Result<Vec<[f32; 3]>> {
+    /// The points, in the coordinates of the supporter's cloud, which begin at `origin` in its file.
+    pub(super) fn read(&self, frames: &FrameArguments, origin: [f64; 3]) -> Result<Vec<[f32; 3]>> {
         let Some(path) = &self.scene else { return Ok(Vec::new()) };
         let placement =
-            Placement { scale: files.supporter_scale, up: files.supporter_up, scale_option: None };
+            Placement { scale: frames.supporter_scale, up: frames.supporter_up, scale_option: None };
         let scene = match files::read_supporter(path)? {
             SupporterFile::Mesh(mesh) => input::scene_mesh(path, mesh, &placement)?,
             SupporterFile::Cloud(cloud) => input::placed_cloud(path, cloud, &placement)?,
         };
-        let shift = [0, 1, 2].map(|i| (scene.origin[i] - supporter.origin[i]) as f32);
+        let shift = [0, 1, 2].map(|i| (scene.origin[i] - origin[i]) as f32);
         Ok(scene.points.iter().map(|point| [0, 1, 2].map(|i| point[i] + shift[i])).collect())
     }
 }

@@ -1,8 +1,8 @@
 //! Where an object or a supporter comes from: a file or depth images.
 
-use super::input::{self, Placement};
+use super::input::{self, Placed, Placement};
 use super::recording::{Recording, RecordingArguments};
-use super::{CloudArguments, FileArguments};
+use super::{CloudArguments, FileArguments, FrameArguments};
 use anyhow::{Context, Result};
 use hangpose::files::{self, CloudFile, MeshFile, SupporterFile};
 use std::path::Path;
@@ -46,30 +46,31 @@ impl<'a> Source<'a> {
     }
 
     /// The object in metres with z up.
-    pub(super) fn object(&self, arguments: &FileArguments) -> Result<MeshFile> {
-        let (scale, up) = (arguments.object_scale, arguments.object_up);
+    pub(super) fn object(&self, frames: &FrameArguments) -> Result<Placed<MeshFile>> {
+        let (scale, up) = (frames.object_scale, frames.object_up);
         let (file, placement) = match self {
             Self::File(path) => {
                 (files::read_mesh(path)?, Placement { scale, up, scale_option: Some("--object-scale") })
             }
             Self::Images(images) => (images.object()?, Placement { scale: 1.0, up, scale_option: None }),
         };
-        let mut mesh = input::object(self.name(), file, &placement)?.shape;
-        if !arguments.object_viewpoint.is_empty() {
-            mesh.viewpoints = arguments.object_viewpoint.iter().map(|view| view.map(|x| x as f32)).collect();
-            mesh.mesh().context("--object-viewpoint")?;
+        let mut placed = input::object(self.name(), file, &placement)?;
+        if !frames.object_viewpoint.is_empty() {
+            let views = frames.object_viewpoint.iter().map(|view| view.map(|x| x as f32));
+            placed.shape.viewpoints = views.collect();
+            placed.shape.mesh().context("--object-viewpoint")?;
         }
-        Ok(mesh)
+        Ok(placed)
     }
 
     /// The supporter in metres with z up.
     pub(super) fn supporter(
         &self,
-        arguments: &FileArguments,
+        frames: &FrameArguments,
         points: &CloudArguments,
         seed: u64,
-    ) -> Result<CloudFile> {
-        let (scale, up) = (arguments.supporter_scale, arguments.supporter_up);
+    ) -> Result<Placed<CloudFile>> {
+        let (scale, up) = (frames.supporter_scale, frames.supporter_up);
         let (file, placement) = match self {
             Self::File(path) => (
                 files::read_supporter(path)?,
@@ -79,6 +80,6 @@ impl<'a> Source<'a> {
                 (SupporterFile::Cloud(images.supporter()?), Placement { scale: 1.0, up, scale_option: None })
             }
         };
-        Ok(input::supporter(self.name(), file, &placement, points, seed)?.shape)
+        input::supporter(self.name(), file, &placement, points, seed)
     }
 }

@@ -1,8 +1,10 @@
 //! Text output: results on standard output, notes, warnings and errors on standard error.
 
 use anyhow::{Context, Result};
+use indicatif::ProgressBar;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
+use std::sync::{Mutex, PoisonError};
 
 /// Prints a result. A pipe that its reader has closed, as `head` does, is not an error.
 pub(super) fn print(content: impl AsRef<[u8]>) -> Result<()> {
@@ -13,9 +15,29 @@ pub(super) fn print(content: impl AsRef<[u8]>) -> Result<()> {
     }
 }
 
+/// The progress bar that is shown, if any. Messages are printed above it.
+static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
+
+/// Shows a progress bar below the messages until the result is dropped.
+pub(super) fn show_below(bar: &ProgressBar) -> impl Drop + use<> {
+    struct Shown(ProgressBar);
+    impl Drop for Shown {
+        fn drop(&mut self) {
+            *BAR.lock().unwrap_or_else(PoisonError::into_inner) = None;
+            self.0.finish_and_clear();
+        }
+    }
+    *BAR.lock().unwrap_or_else(PoisonError::into_inner) = Some(bar.clone());
+    Shown(bar.clone())
+}
+
 /// Prints a message of `kind` `note`, `warning` or `error` to standard error.
 ///
 /// A failure to write is ignored, since there is no other channel to report it on.
 pub(crate) fn say(kind: &str, text: impl Display) {
-    let _ = writeln!(std::io::stderr(), "{kind}: {text}");
+    let print = || writeln!(std::io::stderr(), "{kind}: {text}");
+    let _ = match &*BAR.lock().unwrap_or_else(PoisonError::into_inner) {
+        Some(bar) => bar.suspend(print),
+        None => print(),
+    };
 }

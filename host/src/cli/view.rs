@@ -29,9 +29,9 @@ pub(crate) fn run(arguments: &ViewArguments) -> Result<ExitCode> {
         .collect();
     let shown = shown.prepare(&inputs)?;
 
-    let mesh = object_source.object(files)?;
-    let points = supporter_source.supporter(files, cloud, params.seed)?;
-    let obstacles = scene.read(files, &points)?;
+    let mesh = object_source.object(&files.frames)?.shape;
+    let points = supporter_source.supporter(&files.frames, cloud, params.seed)?.shape;
+    let obstacles = scene.read(&files.frames, points.origin)?;
     json::shift(&mut document, points.origin.map(|x| -x));
     let details = match document.get_mut("poses").map(Value::take) {
         Some(Value::Array(poses)) => poses,

@@ -10,6 +10,7 @@ mod output;
 mod placement;
 mod planning;
 mod shapes;
+mod shell;
 mod usage;
 mod view;
 

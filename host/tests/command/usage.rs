@@ -38,7 +38,7 @@ fn help_lists_every_option_and_status() {
     let run = run!("--help");
     assert_eq!(run.status, Some(0));
     assert!(
-        ["predict", "plan", "inspect", "scan", "Example: hangpose predict"]
+        ["predict", "plan", "inspect", "scan", "Example:\n  hangpose predict"]
             .iter()
             .all(|part| run.stdout.contains(part))
     );

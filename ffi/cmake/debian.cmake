@@ -1,0 +1,66 @@
+# The Debian packages, one for each component: libhangpose3 (with the number of the ABI), libhangpose-dev and hangpose.
+set(components library development)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libhangpose${abi})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_MULTIARCH same)
+# Which package a program needs that links the library, and that the cache of the loader is renewed.
+set(control_dir ${CMAKE_CURRENT_BINARY_DIR}/control-of-library)
+file(WRITE ${control_dir}/shlibs "libhangpose ${abi} libhangpose${abi} (>= ${version})\n")
+file(WRITE ${control_dir}/triggers "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${control_dir}/shlibs ${control_dir}/triggers)
+set(CPACK_COMPONENT_LIBRARY_DESCRIPTION
+  "Predicts ranked poses from a triangle mesh of the object and a point cloud\nof the supporter, in memory that the caller owns. Contains the shared library.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libhangpose-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_MULTIARCH same)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libhangpose${abi} (= ${version})")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+  "Predicts ranked poses from a triangle mesh of the object and a point cloud\nof the supporter, in memory that the caller owns. Contains the static library,\nthe headers for C, C++ and messages of ROS 2, and the files for CMake and\npkg-config.")
+if(HANGPOSE_COMMAND)
+  list(APPEND components command)
+  set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME hangpose)
+  set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION science)
+  set(CPACK_COMPONENT_COMMAND_DESCRIPTION
+    "Predicts ranked poses and paths to them from meshes, point clouds and depth\nimages. Contains the command, its completions for bash, zsh and fish, and its\nman pages.")
+endif()
+
+# Each package has its licence, in the form that Debian reads, and its changelog.
+file(STRINGS LICENSE-MIT mit)
+set(mit_text "")
+foreach(line IN LISTS mit)
+  if(line STREQUAL "")
+    set(line ".")
+  endif()
+  string(APPEND mit_text " ${line}\n")
+endforeach()
+string(REGEX REPLACE "Copyright \\(c\\) ([^;]*);.*" "\\1" holder "${mit}")
+configure_file(ffi/cmake/copyright.in copyright @ONLY)
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+set(changelog_dir ${CMAKE_CURRENT_BINARY_DIR}/changelog-of)
+foreach(component ${components})
+  string(TOUPPER ${component} COMPONENT)
+  set(name ${CPACK_DEBIAN_${COMPONENT}_PACKAGE_NAME})
+  file(WRITE ${changelog_dir}/${name}/changelog
+    "${name} (${version}) unstable; urgency=medium\n\n  * CHANGELOG.md of the sources says what changed.\n\n -- the hangpose developers <hangpose@example.org>  ${date}\n")
+  execute_process(COMMAND gzip --best --no-name --force ${changelog_dir}/${name}/changelog)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/copyright ${changelog_dir}/${name}/changelog.gz LICENSE-APACHE
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
+endforeach()
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_PACKAGE_VENDOR "the hangpose developers")
+set(CPACK_PACKAGE_CONTACT "the hangpose developers <hangpose@example.org>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "where and how to hang an object that a robot has never seen")
+set(CPACK_COMPONENTS_ALL ${components})
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_STRIP_FILES ON)
+# Whatever the umask.
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+include(CPack)
