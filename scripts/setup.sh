@@ -41,6 +41,11 @@ command -v valgrind >/dev/null || missing+=(valgrind libc6-dbg)
 command -v dpkg-shlibdeps >/dev/null || missing+=(dpkg-dev)
 command -v file >/dev/null || missing+=(file)
 pkg-config --exists eigen3 2>/dev/null || missing+=(libeigen3-dev)
+# The tools that build and test the page of viewer/, from Node.js 18 on.
+command -v node >/dev/null || missing+=(nodejs)
+command -v npm >/dev/null || missing+=(npm)
+command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null ||
+    missing+=(chromium)
 
 if command -v rustup >/dev/null; then
     have=$(rustup component list --installed)

@@ -2,7 +2,7 @@
 
 import { Vector3 } from "three";
 import { h } from "./dom";
-import { degrees, millimetres, percent, plural, point, ratio, seconds, speed, vector } from "./format";
+import { count, degrees, millimetres, percent, plural, point, ratio, seconds, speed, vector } from "./format";
 import { lengthOf, pathOf } from "./motion";
 import type { Sequence } from "./motion";
 import { rose } from "./rose";
@@ -46,7 +46,7 @@ function firmness(pose: HangingPose, scene: Scene): HTMLElement | null {
   const untried = margin.tilts.filter((tilt) => tilt === 0).length;
   const summary = held
     ? `Stays at every tilt of gravity up to ${most}, the largest that is tested.`
-    : `Leaves first when gravity tilts towards ${names[margin.tilts.indexOf(least)]}, at ${degrees(least)}.`;
+    : `Leaves first when gravity tilts in the direction ${names[margin.tilts.indexOf(least)]}, at ${degrees(least)}.`;
   return section("How firmly it hangs",
     rose(margin.tilts, scene.mostTilt, up),
     h("p", { class: "caption" }, summary, ` Seen from above.${untried > 0 ? ` ${plural(untried, "direction")} at 0° may not have been tried.` : ""}`),
@@ -138,9 +138,14 @@ export function fallHeight(sequence: Sequence, scene: Scene): number {
 }
 
 export function fallenDetails(fallen: Fallen, index: number, sequence: Sequence, scene: Scene): HTMLElement[] {
+  const { counts } = scene;
+  const fell = counts ? counts.rotated_off + counts.slid_off + counts.moving : 0;
+  const more = fell > scene.fallen.length
+    ? h("p", { class: "caption" }, `${count(fell)} fell in all. The page holds ${count(scene.fallen.length)} of them, spread evenly over the search.`)
+    : null;
   return [
     h("header", {}, h("p", { class: "overline" }, `Candidate ${index + 1} of ${scene.fallen.length} that fell`),
-      h("h2", {}, fateOf(fallen.fate).name), h("p", { class: "lead" }, fateOf(fallen.fate).means)),
+      h("h2", {}, fateOf(fallen.fate).name), h("p", { class: "lead" }, fateOf(fallen.fate).means), more),
     section("How it fell",
       fact("After", seconds(sequence.duration), "Time from the release to the end of the simulated motion."),
       fact("Fell", millimetres(fallHeight(sequence, scene)), "How far the centre of mass sank in that time.")),
@@ -154,6 +159,8 @@ export function rejectionDetails(scene: Scene): HTMLElement[] {
   return [
     h("header", {}, h("p", { class: "overline" }, "No pose"), h("h2", {}, "Nothing hangs"),
       h("p", { class: "notice" }, sentence[0]!.toUpperCase() + sentence.slice(1).replace(/\.?$/, ".")),
-      rejection ? h("p", { class: "caption" }, "Stage: ", h("code", {}, rejection.stage)) : null),
+      rejection ? h("p", { class: "caption" }, "Stage: ", h("code", {}, rejection.stage)) : null,
+      h("p", { class: "caption" }, "The picture shows the object beside the supporter.",
+        scene.fallen.length > 0 ? " The list of what fell shows where it was released." : "")),
   ];
 }

@@ -1,7 +1,7 @@
 // The page: what is chosen, how it is shown, and what keys and buttons do.
 
-import type { Matrix4 } from "three";
-import { fallOf, matrixOf, pathOf, releaseOf } from "./motion";
+import { Matrix4 } from "three";
+import { fallOf, pathOf, releaseOf } from "./motion";
 import type { Sequence } from "./motion";
 import { fallHeight, fallenDetails, poseDetails, rejectionDetails } from "./details";
 import { get, h } from "./dom";
@@ -63,7 +63,7 @@ class Page {
   constructor(private readonly scene: Scene) {
     this.theme = this.system.matches ? "dark" : "light";
     this.items = { poses: this.poseItems(), fallen: this.fallenItems() };
-    get("what").textContent = `${scene.object.name} on ${scene.supporter.name}`;
+    get("what").textContent = get("what").title = `${scene.object.name} on ${scene.supporter.name}`;
     this.fillSummary();
     this.tryView();
     this.fillLayers();
@@ -141,7 +141,7 @@ class Page {
       parts.push(h("p", { class: "notice" }, h("strong", {}, "No room for more: "), rejection.reason));
     }
     const rowsOf: [string, string][] = [];
-    if (counts) {
+    if (counts && (counts.released > 0 || poses.every((pose) => pose.kind !== null))) {
       rowsOf.push(["Released", count(counts.released)], ["Came to rest", count(counts.at_rest)],
         ["Rotated off", count(counts.rotated_off)], ["Slid off", count(counts.slid_off)], ["Still moving", count(counts.moving)]);
     }
@@ -246,7 +246,7 @@ class Page {
   }
 
   private matrix(): Matrix4 {
-    return this.sequence ? this.sequence.object.at(this.time) : matrixOf({ position: [0, 0, 0], quaternion_xyzw: [0, 0, 0, 1] });
+    return this.sequence?.object.at(this.time) ?? this.view?.beside() ?? new Matrix4();
   }
 
   /** Where the object is in the course of the sequence. */
@@ -358,6 +358,7 @@ class Page {
 
   fit(): void {
     this.view?.fit(this.places(), this.pose?.contacts ?? []);
+    if (!this.sequence) this.view?.fitAll();
   }
 
   fitAll(): void {

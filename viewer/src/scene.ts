@@ -204,7 +204,9 @@ function bytes(value: unknown, where: string, unit: number): ArrayBuffer {
     throw new SceneError(where, "is not base64");
   }
   if (binary.length % unit !== 0) throw new SceneError(where, `has ${binary.length} bytes, no multiple of ${unit}`);
-  return Uint8Array.from(binary, (c) => c.charCodeAt(0)).buffer;
+  const read = new Uint8Array(binary.length);
+  for (let i = 0; i < binary.length; i++) read[i] = binary.charCodeAt(i);
+  return read.buffer;
 }
 
 export function floats(value: unknown, where: string, stride: number): Float32Array {

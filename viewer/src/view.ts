@@ -46,7 +46,7 @@ import { axesOf } from "./axes";
 import { percent } from "./format";
 import { matrixOf } from "./motion";
 import type { Sequence } from "./motion";
-import type { Fallen, HangingPose, Points as Cloud, Scene, Vec3 } from "./scene";
+import type { Contact, Fallen, HangingPose, Points as Cloud, Scene, Vec3 } from "./scene";
 import { PALETTES } from "./theme";
 import type { Colour, Theme } from "./theme";
 
@@ -57,15 +57,21 @@ const CREASE = 0.6;
 /** Triangles of all ghosts together: what a laptop without a graphics card still turns smoothly. */
 const GHOST_TRIANGLES = 400_000;
 /** Points of which the distance to their neighbours is measured. */
-const SPACING_SAMPLES = 150;
-/** Radius of the disc of a supporter point, in median distances between neighbours: nearly closes the surface. */
-const DISC = 2.2;
+const SPACING_SAMPLES = 60;
+/** Radius of the disc of a supporter point, in median distances between neighbours: closes most of the surface. */
+const DISC = 1.9;
 /** How much wider than the image on the page a saved picture is. */
 const PICTURE_SCALE = 2;
+/** Contact force below which an arrow gets no shorter, multiples of the weight. */
+const LEAST_FORCE = 0.08;
+/** Contact force from which its arrow has a label, multiples of the weight. */
+const WORTH_A_LABEL = 0.1;
 /** Angle of the first view above the horizon, radians. */
 const ELEVATION = 0.35;
-/** Angle by which the first view turns from the side of the object towards its front, radians. */
-const TURN = 0.5;
+/** Of so many supporter points one is asked whether it stands before the object. */
+const STRIDE = 5;
+/** Directions around the object of which the first view is the best. */
+const DIRECTIONS = 24;
 
 export interface Layer {
   id: string;
@@ -182,6 +188,7 @@ export class View {
   private readonly centre: Vector3;
   private framed = new Sphere();
   private free = 0;
+  private chosen: HangingPose | null = null;
   private scheduled = false;
   private theme: Theme = "light";
   gridCell = 0;
@@ -300,7 +307,7 @@ export class View {
   private addMarks(): void {
     const { object, supporter, poses, fallen } = this.scene;
     const sign = new Sprite(new SpriteMaterial({ map: centreOfMassSign(), sizeAttenuation: false, depthTest: false }));
-    sign.scale.setScalar(0.022);
+    sign.scale.setScalar(0.017);
     sign.position.set(...object.centreOfMass);
     sign.renderOrder = 3;
     this.object.add(sign);
@@ -455,10 +462,10 @@ export class View {
     for (const group of [this.forces, this.released, this.others, this.trail, this.nextView]) this.clear(group);
     if (pose) {
       for (const contact of pose.contacts) this.addForce(contact.position, contact.normal, contact.force);
-      const others = this.scene.poses.filter((other) => other !== pose).map((other) => matrixOf(other.rest ?? other.release));
-      if (others.length > 0) this.others.add(...this.untinted(() => this.ghosts(others, "object")));
       this.addNextViews(pose);
     }
+    this.chosen = pose;
+    this.addOthers();
     const release = pose?.release ?? fallen?.release;
     if (release) {
       const ghost = new Mesh(this.objectGeometry, this.ghostMaterial);
@@ -473,6 +480,13 @@ export class View {
       this.trail.add(line);
     }
     this.draw();
+  }
+
+  /** The other poses, if they are to be seen: they may be many. */
+  private addOthers(): void {
+    if (!this.chosen || !this.isOn("others") || this.others.children.length > 0) return;
+    const others = this.scene.poses.filter((other) => other !== this.chosen).map((other) => matrixOf(other.rest ?? other.release));
+    this.others.add(...this.untinted(() => this.ghosts(others, "object")));
   }
 
   /** Materials that are made for one pose are forgotten with it. */
@@ -495,8 +509,13 @@ export class View {
     group.clear();
   }
 
+  /** Length of the arrow of a force, given in multiples of the weight. */
+  private lengthOf(force: number): number {
+    return Math.max(force, LEAST_FORCE) * 0.6 * this.radius;
+  }
+
   private addForce(position: Vec3, normal: Vec3, force: number): void {
-    const length = Math.max(force, 0.08) * 0.6 * this.radius;
+    const length = this.lengthOf(force);
     const thick = 0.013 * this.radius;
     const head = Math.min(7 * thick, 0.5 * length);
     const shaft = new Mesh(new CylinderGeometry(thick, thick, length - head, 12), this.forceMaterial);
@@ -504,7 +523,8 @@ export class View {
     const tip = new Mesh(new ConeGeometry(2.6 * thick, head, 20), this.forceMaterial);
     tip.position.y = length - head / 2;
     const foot = new Mesh(new SphereGeometry(1.8 * thick, 16, 12), this.forceMaterial);
-    const arrow = new Group().add(shaft, tip, foot, this.label(`${percent(force)} of the weight`, "force", new Vector3(0, length, 0)));
+    const arrow = new Group().add(shaft, tip, foot);
+    if (force >= WORTH_A_LABEL) arrow.add(this.label(`${percent(force)} of the weight`, "force", new Vector3(0, length, 0)));
     arrow.position.set(...position);
     arrow.quaternion.setFromUnitVectors(Y, new Vector3(...normal).normalize());
     arrow.traverse((thing) => (thing.renderOrder = 4));
@@ -571,6 +591,7 @@ export class View {
     if (!layer) return;
     layer.on = on;
     for (const thing of this.groups.get(id) ?? []) thing.visible = on;
+    if (id === "others") this.addOthers();
     if (id === "labels") this.labels.domElement.hidden = !on;
     this.draw();
   }
@@ -593,10 +614,12 @@ export class View {
   }
 
   /** What is to be seen of the object at these places: it, its contacts, and the supporter near it. */
-  private sphere(places: readonly Matrix4[], contacts: readonly { position: Vec3 }[]): Sphere {
+  private sphere(places: readonly Matrix4[], contacts: readonly Contact[]): Sphere {
     const box = new Box3();
     for (const place of places) box.union(this.objectBox(place));
-    for (const { position } of contacts) box.expandByPoint(new Vector3(...position));
+    for (const { position, normal, force } of contacts) {
+      box.expandByPoint(new Vector3(...normal).multiplyScalar(this.lengthOf(force)).add(new Vector3(...position)));
+    }
     const near = box.clone().expandByScalar(0.5 * this.radius);
     const { positions } = this.scene.supporter.points;
     const point = new Vector3();
@@ -607,7 +630,7 @@ export class View {
   }
 
   /** Looks at the object from the side of the way in which it hangs off the supporter, from a little above. */
-  fit(places: readonly Matrix4[], contacts: readonly { position: Vec3 }[]): void {
+  fit(places: readonly Matrix4[], contacts: readonly Contact[]): void {
     this.frame(this.sphere(places, contacts), this.side(places[places.length - 1]!));
   }
 
@@ -624,7 +647,7 @@ export class View {
   }
 
   /** Frames the object anew, from the same direction, if it leaves what was framed or is small in it. */
-  follow(places: readonly Matrix4[], contacts: readonly { position: Vec3 }[]): void {
+  follow(places: readonly Matrix4[], contacts: readonly Contact[]): void {
     const sphere = this.sphere(places, contacts);
     const reach = sphere.center.distanceTo(this.framed.center) + sphere.radius;
     if (reach > 1.15 * this.framed.radius || sphere.radius < 0.65 * this.framed.radius) this.frame(sphere, this.direction());
@@ -634,24 +657,61 @@ export class View {
     return this.camera.position.clone().sub(this.controls.target).normalize();
   }
 
+  /** A direction from which much of the object is seen, and little of the supporter stands before it: rather from the side and
+   * the front of the way in which it hangs off the supporter. */
   private side(matrix: Matrix4): Vector3 {
     const { ahead, aside } = axesOf(this.up);
-    const supporter = boxOf(this.scene.supporter.points.positions).getCenter(new Vector3());
-    const offset = this.centre.clone().applyMatrix4(matrix).sub(supporter);
+    const { positions } = this.scene.supporter.points;
+    const centre = this.centre.clone().applyMatrix4(matrix);
+    const offset = centre.clone().sub(boxOf(positions).getCenter(new Vector3()));
     offset.addScaledVector(this.up, -offset.dot(this.up));
     if (offset.length() < 0.1 * this.radius) offset.copy(ahead);
     offset.normalize();
-    const side = this.up.clone().cross(offset);
-    if (side.dot(aside) > 0) side.negate();
-    return side.multiplyScalar(Math.cos(TURN)).addScaledVector(offset, Math.sin(TURN))
-      .multiplyScalar(Math.cos(ELEVATION)).addScaledVector(this.up, Math.sin(ELEVATION));
+    const { x, y, z } = this.box.getSize(new Vector3());
+    const faces = [y * z, x * z, x * y];
+    const most = Math.hypot(...faces) || 1;
+    const axes = [new Vector3(), new Vector3(), new Vector3()];
+    matrix.extractBasis(axes[0]!, axes[1]!, axes[2]!);
+    const [point, across] = [new Vector3(), new Vector3()];
+    const worth = (direction: Vector3): number => {
+      const seen = faces.reduce((sum, face, i) => sum + face * Math.abs(direction.dot(axes[i]!)), 0) / most;
+      let [near, before] = [1, 0];
+      for (let i = 0; i + 2 < positions.length; i += 3 * STRIDE) {
+        point.fromArray(positions, i).sub(centre);
+        if (point.lengthSq() < 4 * this.radius ** 2) near++;
+        const ahead = point.dot(direction);
+        if (ahead > 0 && across.copy(point).addScaledVector(direction, -ahead).length() < 0.6 * this.radius) before++;
+      }
+      const fromTheSide = Math.sqrt(Math.max(1 - direction.dot(offset) ** 2, 0));
+      return seen + 0.3 * fromTheSide + 0.2 * direction.dot(offset) - 0.05 * direction.dot(aside) - Math.min(before / near, 1);
+    };
+    let [best, worthOfBest] = [ahead, -Infinity];
+    for (let i = 0; i < DIRECTIONS; i++) {
+      const angle = (2 * Math.PI * i) / DIRECTIONS;
+      const direction = ahead.clone().multiplyScalar(Math.cos(angle)).addScaledVector(aside, Math.sin(angle))
+        .multiplyScalar(Math.cos(ELEVATION)).addScaledVector(this.up, Math.sin(ELEVATION));
+      const its = worth(direction);
+      if (its > worthOfBest) [best, worthOfBest] = [direction, its];
+    }
+    return best;
+  }
+
+  /** A place for an object that hangs nowhere: beside the supporter. */
+  beside(): Matrix4 {
+    const { ahead } = axesOf(this.up);
+    const box = boxOf(this.scene.supporter.points.positions);
+    if (box.isEmpty()) return new Matrix4();
+    const half = box.getSize(new Vector3()).multiplyScalar(0.5);
+    const reach = Math.abs(half.dot(new Vector3(Math.abs(ahead.x), Math.abs(ahead.y), Math.abs(ahead.z))));
+    const at = box.getCenter(new Vector3()).addScaledVector(ahead, reach + 1.2 * this.radius).sub(this.centre);
+    return new Matrix4().setPosition(at);
   }
 
   private frame(sphere: Sphere, direction: Vector3): void {
     this.framed = sphere;
     const half = (FIELD_OF_VIEW * Math.PI) / 360;
     const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect * (1 - this.free / this.host.clientWidth)));
-    const distance = (1.02 * sphere.radius) / Math.sin(narrow);
+    const distance = (0.97 * sphere.radius) / Math.sin(narrow);
     this.camera.near = distance / 200;
     this.camera.far = distance * 60;
     this.camera.updateProjectionMatrix();

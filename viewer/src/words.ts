@@ -10,13 +10,13 @@ const KINDS: Record<string, { name: string; means: string }> = {
   balanced: { name: "Balanced", means: "Friction or balance holds it. A push frees it." },
 };
 
-const NOT_RELEASED = {
-  name: "Not released",
+const NOT_SIMULATED = {
+  name: "Not simulated",
   means: "A pose of the published method, which does not release the object in a simulation.",
 };
 
 export function kindOf(kind: string | null): { name: string; means: string } {
-  if (kind === null) return NOT_RELEASED;
+  if (kind === null) return NOT_SIMULATED;
   return KINDS[kind] ?? { name: kind, means: "" };
 }
 
