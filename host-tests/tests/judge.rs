@@ -265,7 +265,7 @@ impl Draw {
     }
 }
 
-const TRIALS: usize = 200;
+const TRIALS: usize = 80;
 
 fn trials() -> &'static [Trial] {
     static TRIALS_ONCE: OnceLock<Vec<Trial>> = OnceLock::new();

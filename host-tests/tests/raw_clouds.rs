@@ -158,7 +158,9 @@ fn outcome(case: &Case, raw: &Raw) -> Result<(), String> {
         return Err(format!("no pose: {:?}", found.rejection.map(|r| r.stage)));
     };
     let truth = with_boxes(&case.supporter, &raw.boxes);
-    let verdict = Bullet::default().judge(&Scene::new(&case.object, &truth), &best.pose);
+    let mut scene = Scene::new(&case.object, &truth);
+    scene.tilt = false;
+    let verdict = Bullet::default().judge(&scene, &best.pose);
     let said = best.rest.map_or(0.0, |rest| rest.probability);
     if verdict.success() {
         return Ok(());

@@ -39,7 +39,7 @@ fn verdicts_on_shells_are_those_on_exact_parts() {
         ("mug through hook", mug(), hook(), pose([0.02, 0.1, -0.01], Vector3::y(), -90.0), false),
         ("ball in a box", ball(0.004), cuboid([0.05; 3]), at(0.0, 0.0, 0.0), false),
     ];
-    for (name, object, supporter, release, hangs) in &cases {
+    let check = |(name, object, supporter, release, hangs): &(&str, Solid, Solid, Isometry3<f32>, bool)| {
         let exact = judge(object, supporter, release);
         assert_eq!(exact.success(), *hangs, "{name}: {exact:?}");
         for (object, supporter) in [(&shell(object), &shell(supporter)), (&shell(object), supporter)] {
@@ -47,7 +47,13 @@ fn verdicts_on_shells_are_those_on_exact_parts() {
             assert_eq!(verdict.clear, exact.clear, "{name}: {verdict:?}");
             assert_eq!(verdict.success(), *hangs, "{name}: {verdict:?}");
         }
-    }
+    };
+    // Two threads, since the other tests of this file are short.
+    let (even, odd) = (cases.iter().step_by(2), cases.iter().skip(1).step_by(2));
+    std::thread::scope(|scope| {
+        scope.spawn(|| even.for_each(check));
+        odd.for_each(check);
+    });
 }
 
 #[test]
