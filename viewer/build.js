@@ -14,8 +14,16 @@ const PLACEHOLDERS = ["__HANGPOSE_TITLE__", "__HANGPOSE_SCENE__"];
 
 async function bundle(entry, loader) {
   const result = await build({
-    entryPoints: [join(here, entry)], bundle: true, minify: true, write: false, format: "iife", target: ["es2022"],
-    loader, charset: "utf8", legalComments: "none", logLevel: "warning",
+    entryPoints: [join(here, entry)],
+    bundle: true,
+    minify: true,
+    write: false,
+    format: "iife",
+    target: ["es2022"],
+    loader,
+    charset: "utf8",
+    legalComments: "none",
+    logLevel: "warning",
   });
   return result.outputFiles[0].text.trim();
 }
@@ -26,7 +34,8 @@ function fail(why) {
 }
 
 const licence = read("LICENSES/three.txt");
-if (licence !== read("node_modules/three/LICENSE")) fail("LICENSES/three.txt is not the licence of node_modules/three: copy it");
+if (licence !== read("node_modules/three/LICENSE"))
+  fail("LICENSES/three.txt is not the licence of node_modules/three: copy it");
 if (licence.includes("--")) fail("the licence of three.js has two dashes, which end a comment of the page");
 
 const script = await bundle("src/main.ts", {});

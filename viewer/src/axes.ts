@@ -2,8 +2,10 @@
 
 import { Vector3 } from "three";
 
-/** `ahead` is the supporter's x axis, or y where x is vertical, made horizontal; `aside` is a quarter turn counter-clockwise
- * seen from above. */
+/**
+ * `ahead` is the supporter's x axis, or y where x is vertical, made horizontal; `aside` is a quarter turn counter-clockwise
+ * from it, seen from above.
+ */
 export function axesOf(up: Vector3): { ahead: Vector3; aside: Vector3 } {
   const along = Math.abs(up.x) < 0.9 ? new Vector3(1, 0, 0) : new Vector3(0, 1, 0);
   const ahead = along.addScaledVector(up, -along.dot(up)).normalize();

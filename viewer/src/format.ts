@@ -12,7 +12,10 @@ export function millimetres(metres: number | null | undefined): string {
   const mm = 1000 * metres;
   if (mm > 0 && mm < 0.05) return `<${SPACE}0.1${SPACE}mm`;
   if (Math.abs(mm) >= 1000) return `${metres.toFixed(2)}${SPACE}m`;
-  return `${mm.toFixed(Math.abs(mm) < 99.95 ? 1 : 0).replace(/^-0\.0$/, "0.0").replace("-", "−")}${SPACE}mm`;
+  return `${mm
+    .toFixed(Math.abs(mm) < 99.95 ? 1 : 0)
+    .replace(/^-0\.0$/, "0.0")
+    .replace("-", "−")}${SPACE}mm`;
 }
 
 export function degrees(radians: number | null | undefined): string {
@@ -29,7 +32,9 @@ export function percent(share: number | null | undefined): string {
 
 export function seconds(time: number | null | undefined): string {
   if (!known(time)) return UNKNOWN;
-  return time < 0.9995 && time > 0 ? `${(1000 * time).toFixed(0)}${SPACE}ms` : `${time.toFixed(time < 9.95 ? 1 : 0)}${SPACE}s`;
+  return time < 0.9995 && time > 0
+    ? `${(1000 * time).toFixed(0)}${SPACE}ms`
+    : `${time.toFixed(time < 9.95 ? 1 : 0)}${SPACE}s`;
 }
 
 export function speed(metresPerSecond: number | null | undefined): string {
@@ -46,7 +51,14 @@ export function count(value: number): string {
 
 /** Coordinates in millimetres. */
 export function point(metres: readonly number[]): string {
-  return metres.map((x) => (1000 * x).toFixed(1).replace(/^-0\.0$/, "0.0").replace("-", "−")).join(", ");
+  return metres
+    .map((x) =>
+      (1000 * x)
+        .toFixed(1)
+        .replace(/^-0\.0$/, "0.0")
+        .replace("-", "−"),
+    )
+    .join(", ");
 }
 
 /** The numbers of a vector or quaternion without a unit. */

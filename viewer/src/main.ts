@@ -85,7 +85,8 @@ class Page {
     const { canvas } = this.view;
     canvas.setAttribute("aria-label", `${this.scene.object.name} on ${this.scene.supporter.name} in three dimensions`);
     canvas.addEventListener("webglcontextlost", () =>
-      this.noPicture("The browser has taken back the memory of the picture. Load the page again to see it."));
+      this.noPicture("The browser has taken back the memory of the picture. Load the page again to see it."),
+    );
     canvas.addEventListener("webglcontextrestored", () => {
       get("no-picture").hidden = true;
       this.view?.draw();
@@ -111,23 +112,43 @@ class Page {
   private poseItems(): HTMLElement[] {
     return this.scene.poses.map((pose, i) => {
       const kind = kindOf(pose.kind);
-      const path = pose.path ? h("span", { class: "tag", title: "A path to this pose was planned" }, "path")
-        : pose.pathFailure ? h("span", { class: "tag none", title: pose.pathFailure }, "no path") : null;
+      const path = pose.path
+        ? h("span", { class: "tag", title: "A path to this pose was planned" }, "path")
+        : pose.pathFailure
+          ? h("span", { class: "tag none", title: pose.pathFailure }, "no path")
+          : null;
       const bar = h("span", { class: "bar", "aria-hidden": "true" });
       bar.style.setProperty("--share", String(pose.probability ?? 0));
-      return this.item("poses", i, h("span", { class: "rank" }, String(pose.rank)),
-        h("span", { class: "kind" }, kind.name), path,
-        h("span", { class: "value", ...(pose.probability === null ? {} : { title: "Probability that it hangs and stays" }) },
-          pose.probability === null ? "" : percent(pose.probability)),
-        pose.probability === null ? null : bar);
+      return this.item(
+        "poses",
+        i,
+        h("span", { class: "rank" }, String(pose.rank)),
+        h("span", { class: "kind" }, kind.name),
+        path,
+        h(
+          "span",
+          { class: "value", ...(pose.probability === null ? {} : { title: "Probability that it hangs and stays" }) },
+          pose.probability === null ? "" : percent(pose.probability),
+        ),
+        pose.probability === null ? null : bar,
+      );
     });
   }
 
   private fallenItems(): HTMLElement[] {
     return this.scene.fallen.map((fallen, i) => {
       const sequence = fallOf(fallen, this.scene);
-      return this.item("fallen", i, h("span", { class: "rank" }, String(i + 1)), h("span", { class: "kind" }, fateOf(fallen.fate).name),
-        h("span", { class: "value", title: "How far the centre of mass falls" }, millimetres(fallHeight(sequence, this.scene))));
+      return this.item(
+        "fallen",
+        i,
+        h("span", { class: "rank" }, String(i + 1)),
+        h("span", { class: "kind" }, fateOf(fallen.fate).name),
+        h(
+          "span",
+          { class: "value", title: "How far the centre of mass falls" },
+          millimetres(fallHeight(sequence, this.scene)),
+        ),
+      );
     });
   }
 
@@ -142,20 +163,38 @@ class Page {
     }
     const rowsOf: [string, string][] = [];
     if (counts && (counts.released > 0 || poses.every((pose) => pose.kind !== null))) {
-      rowsOf.push(["Released", count(counts.released)], ["Came to rest", count(counts.at_rest)],
-        ["Rotated off", count(counts.rotated_off)], ["Slid off", count(counts.slid_off)], ["Still moving", count(counts.moving)]);
+      rowsOf.push(
+        ["Released", count(counts.released)],
+        ["Came to rest", count(counts.at_rest)],
+        ["Rotated off", count(counts.rotated_off)],
+        ["Slid off", count(counts.slid_off)],
+        ["Still moving", count(counts.moving)],
+      );
     }
-    rowsOf.push(["Object", plural(object.triangleCount, "triangle")], ["Supporter", plural(supporter.pointCount, "point")]);
+    rowsOf.push(
+      ["Object", plural(object.triangleCount, "triangle")],
+      ["Supporter", plural(supporter.pointCount, "point")],
+    );
     if (seconds) {
       rowsOf.push(["Time", inSeconds(seconds.object + seconds.supporter + seconds.matching)]);
     }
     const list = h("dl", {}, ...rowsOf.flatMap(([name, value]) => [h("dt", {}, name), h("dd", {}, value)]));
     if (seconds) {
-      list.lastElementChild!.setAttribute("title",
-        `object ${inSeconds(seconds.object)}, supporter ${inSeconds(seconds.supporter)}, matching ${inSeconds(seconds.matching)}`);
+      list.lastElementChild!.setAttribute(
+        "title",
+        `object ${inSeconds(seconds.object)}, supporter ${inSeconds(seconds.supporter)}, matching ` +
+          `${inSeconds(seconds.matching)}`,
+      );
     }
-    parts.push(h("details", { class: "counts", ...(window.innerWidth >= WIDE ? { open: "" } : {}) }, h("summary", {}, "Prediction"), list,
-      h("p", { class: "version" }, `hangpose ${this.scene.version}`)));
+    parts.push(
+      h(
+        "details",
+        { class: "counts", ...(window.innerWidth >= WIDE ? { open: "" } : {}) },
+        h("summary", {}, "Prediction"),
+        list,
+        h("p", { class: "version" }, `hangpose ${this.scene.version}`),
+      ),
+    );
     get("summary").replaceChildren(...parts);
   }
 
@@ -164,12 +203,14 @@ class Page {
       get("layers").hidden = true;
       return;
     }
-    get("layer-list").replaceChildren(...this.view.layers.map((layer) => {
-      const box = h("input", { type: "checkbox", "data-layer": layer.id, ...(layer.on ? { checked: "" } : {}) });
-      box.addEventListener("change", () => this.setLayer(layer.id, box.checked));
-      const swatch = h("span", { class: "swatch", "aria-hidden": "true", "data-colour": layer.colour ?? layer.id });
-      return h("label", {}, box, swatch, layer.label);
-    }));
+    get("layer-list").replaceChildren(
+      ...this.view.layers.map((layer) => {
+        const box = h("input", { type: "checkbox", "data-layer": layer.id, ...(layer.on ? { checked: "" } : {}) });
+        box.addEventListener("change", () => this.setLayer(layer.id, box.checked));
+        const swatch = h("span", { class: "swatch", "aria-hidden": "true", "data-colour": layer.colour ?? layer.id });
+        return h("label", {}, box, swatch, layer.label);
+      }),
+    );
     const layers = get<HTMLDetailsElement>("layers");
     layers.open = window.innerWidth >= WIDE;
     const makeRoom = () => {
@@ -202,7 +243,8 @@ class Page {
 
   choose(list: "poses" | "fallen", index: number): void {
     const all = this.scene[list];
-    if (!Number.isInteger(index) || !all[index]) throw new RangeError(`there are ${all.length} ${list}, no index ${index}`);
+    if (!Number.isInteger(index) || !all[index])
+      throw new RangeError(`there are ${all.length} ${list}, no index ${index}`);
     this.chosen[list] = index;
     if (list === this.list) this.showChosen();
     else this.setList(list);
@@ -228,7 +270,9 @@ class Page {
     if (pose) {
       this.sequence = (this.wanted === "path" ? pathOf(pose, scene) : null) ?? releaseOf(pose, scene);
       details = poseDetails(pose, scene);
-      get("said").textContent = `Pose ${pose.rank}, ${kindOf(pose.kind).name}${pose.probability === null ? "" : `, ${percent(pose.probability)}`}`;
+      get("said").textContent =
+        `Pose ${pose.rank}, ${kindOf(pose.kind).name}` +
+        (pose.probability === null ? "" : `, ${percent(pose.probability)}`);
     } else if (fallen) {
       this.sequence = fallOf(fallen, scene);
       details = fallenDetails(fallen, this.chosen.fallen, this.sequence, scene);
@@ -270,12 +314,14 @@ class Page {
     get("show-release").setAttribute("aria-pressed", String(sequence?.name !== "path"));
     this.slider.title = sequence?.about ?? "";
     let from = 0;
-    get("phases").replaceChildren(...(sequence?.phases ?? []).map((phase) => {
-      const element = h("span");
-      element.style.flexGrow = String(1 + (1000 * (phase.until - from)) / Math.max(sequence!.duration, 1e-6));
-      from = phase.until;
-      return element;
-    }));
+    get("phases").replaceChildren(
+      ...(sequence?.phases ?? []).map((phase) => {
+        const element = h("span");
+        element.style.flexGrow = String(1 + (1000 * (phase.until - from)) / Math.max(sequence!.duration, 1e-6));
+        from = phase.until;
+        return element;
+      }),
+    );
   }
 
   show(sequence: "release" | "path"): void {
@@ -388,7 +434,10 @@ class Page {
   private async save(): Promise<void> {
     const url = URL.createObjectURL(await this.picture());
     const name = this.scene.object.name.replace(/\.[^.]*$/, "").replace(/[^\w-]+/g, "_");
-    h("a", { href: url, download: `hangpose_${name}_${this.list === "poses" ? "pose" : "fallen"}_${this.chosen[this.list] + 1}.png` }).click();
+    h("a", {
+      href: url,
+      download: `hangpose_${name}_${this.list === "poses" ? "pose" : "fallen"}_${this.chosen[this.list] + 1}.png`,
+    }).click();
     setTimeout(() => URL.revokeObjectURL(url), 1000);
   }
 
@@ -437,15 +486,25 @@ class Page {
       this.seek(time);
     };
     const actions: Record<string, () => void> = {
-      ArrowDown: () => this.step(1), j: () => this.step(1), ArrowUp: () => this.step(-1), k: () => this.step(-1),
-      ArrowLeft: () => move(this.time - STEP * duration), ArrowRight: () => move(this.time + STEP * duration),
-      Home: () => move(0), End: () => move(duration), " ": () => this.togglePlay(),
-      r: () => this.show("release"), p: () => this.show("path"),
+      ArrowDown: () => this.step(1),
+      j: () => this.step(1),
+      ArrowUp: () => this.step(-1),
+      k: () => this.step(-1),
+      ArrowLeft: () => move(this.time - STEP * duration),
+      ArrowRight: () => move(this.time + STEP * duration),
+      Home: () => move(0),
+      End: () => move(duration),
+      " ": () => this.togglePlay(),
+      r: () => this.show("release"),
+      p: () => this.show("path"),
       c: () => this.setList(this.list === "poses" ? "fallen" : "poses"),
-      f: () => this.fit(), a: () => this.fitAll(), x: () => this.seeThrough(),
+      f: () => this.fit(),
+      a: () => this.fitAll(),
+      x: () => this.seeThrough(),
       l: () => (get<HTMLDetailsElement>("layers").open = !get<HTMLDetailsElement>("layers").open),
       t: () => this.setTheme(this.theme === "dark" ? "light" : "dark"),
-      s: () => void (this.view && this.save()), "?": () => this.help(),
+      s: () => void (this.view && this.save()),
+      "?": () => this.help(),
     };
     const action = Object.hasOwn(actions, event.key) ? actions[event.key] : undefined;
     if (!action) return;
@@ -516,9 +575,20 @@ function start(): Promise<void> {
     Object.assign(window.hangpose, api(page));
     return nextFrame();
   } catch (error) {
-    get("app").replaceChildren(h("div", { class: "broken", role: "alert" }, h("h1", {}, "This page cannot be shown"),
-      h("p", {}, (error as Error).message),
-      h("p", {}, "The page and its scene may be from different versions of hangpose, or the file may be damaged: write it again.")));
+    get("app").replaceChildren(
+      h(
+        "div",
+        { class: "broken", role: "alert" },
+        h("h1", {}, "This page cannot be shown"),
+        h("p", {}, (error as Error).message),
+        h(
+          "p",
+          {},
+          "The page and its scene may be from different versions of hangpose, or the file may be damaged: " +
+            "write it again.",
+        ),
+      ),
+    );
     return Promise.reject(error as Error);
   }
 }

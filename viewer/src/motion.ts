@@ -18,17 +18,24 @@ export function matrixOf({ position, quaternion_xyzw }: Pose): Matrix4 {
   return new Matrix4().compose(new Vector3(...position), new Quaternion(...quaternion_xyzw).normalize(), ONE);
 }
 
-/** Poses over time. In between, the pivot moves in a straight line and the rotation about it is a slerp, as in a path. */
+/** Poses over time. In between, the pivot moves in a straight line and the object turns about it by slerp, as in a path. */
 export class Track {
   readonly start: number;
   readonly end: number;
   private readonly rotations: Quaternion[];
   private readonly pivots: Vector3[];
 
-  constructor(private readonly keys: readonly Waypoint[], private readonly pivot: Vector3) {
+  constructor(
+    private readonly keys: readonly Waypoint[],
+    private readonly pivot: Vector3,
+  ) {
     this.rotations = keys.map((key) => new Quaternion(...key.quaternion_xyzw).normalize());
     this.pivots = keys.map((key, i) =>
-      pivot.clone().applyQuaternion(this.rotations[i]!).add(new Vector3(...key.position)));
+      pivot
+        .clone()
+        .applyQuaternion(this.rotations[i]!)
+        .add(new Vector3(...key.position)),
+    );
     this.start = keys[0]?.seconds ?? 0;
     this.end = keys[keys.length - 1]?.seconds ?? 0;
   }
@@ -66,7 +73,7 @@ export interface Sequence {
   /** The gripper, if it is to be seen. */
   gripper: ((seconds: number) => { matrix: Matrix4; opening: number }) | null;
   /** When the object has come to rest, and the contact forces act. */
-  rests: ((seconds: number) => boolean);
+  rests: (seconds: number) => boolean;
 }
 
 function same(a: Pose, b: Pose): boolean {
@@ -91,7 +98,11 @@ export function releaseOf(pose: HangingPose, scene: Scene): Sequence {
   const object = new Track(keys, new Vector3(...scene.object.centreOfMass));
   const duration = object.end;
   return {
-    name: "release", about, duration, object, gripper: null,
+    name: "release",
+    about,
+    duration,
+    object,
+    gripper: null,
     phases: [{ name: pose.rest ? "Release to rest" : "Pose", until: duration }],
     rests: (seconds) => seconds >= duration - 1e-6,
   };
@@ -101,7 +112,11 @@ export function fallOf(fallen: Fallen, scene: Scene): Sequence {
   const keys = fallen.motion.length > 0 ? fallen.motion : [{ ...fallen.release, seconds: 0 }];
   const object = new Track(keys, new Vector3(...scene.object.centreOfMass));
   return {
-    name: "fall", about: "Release and fall: the simulated motion", duration: object.end, object, gripper: null,
+    name: "fall",
+    about: "Release and fall: the simulated motion",
+    duration: object.end,
+    object,
+    gripper: null,
     phases: [{ name: "Fall", until: object.end }],
     rests: () => false,
   };
@@ -127,10 +142,16 @@ export function pathOf(pose: HangingPose, scene: Scene): Sequence | null {
   const release = waypoints[path.release]!.seconds;
   const shift = takesOff ? pause : 0;
   const object = new Track(
-    waypoints.map((key) => ({ ...key, seconds: key.seconds + shift })), new Vector3(...scene.object.centreOfMass));
-  const alone = path.gripper.length > 0
-    ? new Track(path.gripper.map((key) => ({ ...key, seconds: key.seconds + (takesOff ? 0 : pause) })), pivotOfGripper)
-    : null;
+    waypoints.map((key) => ({ ...key, seconds: key.seconds + shift })),
+    new Vector3(...scene.object.centreOfMass),
+  );
+  const alone =
+    path.gripper.length > 0
+      ? new Track(
+          path.gripper.map((key) => ({ ...key, seconds: key.seconds + (takesOff ? 0 : pause) })),
+          pivotOfGripper,
+        )
+      : null;
   const phases: Phase[] = takesOff
     ? [
         { name: "Gripper approaches", until: alone?.end ?? 0 },

@@ -20,7 +20,9 @@ function at(direction: number, radius: number): [number, number] {
 export function rose(tilts: readonly number[], most: number, up: Vector3): HTMLElement {
   const names = directionNames(up);
   const picture = svg("svg", {
-    viewBox: "-112 -106 224 212", class: "rose", role: "img",
+    viewBox: "-112 -106 224 212",
+    class: "rose",
+    role: "img",
     "aria-label": `Tilts survived: ${tilts.map((tilt, i) => `${names[i]} ${degrees(tilt)}`).join(", ")}`,
   });
   const scale = (tilt: number) => (RADIUS * Math.min(Math.max(tilt, 0), most)) / most;
@@ -32,15 +34,29 @@ export function rose(tilts: readonly number[], most: number, up: Vector3): HTMLE
     const [x, y] = at(i, RADIUS);
     picture.append(svg("line", { x1: 0, y1: 0, x2: x, y2: y, class: "spoke" }));
   }
-  picture.append(svg("polygon", {
-    class: "survived", points: tilts.map((tilt, i) => at(i, scale(tilt)).map((v) => v.toFixed(2)).join(",")).join(" "),
-  }));
+  picture.append(
+    svg("polygon", {
+      class: "survived",
+      points: tilts
+        .map((tilt, i) =>
+          at(i, scale(tilt))
+            .map((v) => v.toFixed(2))
+            .join(","),
+        )
+        .join(" "),
+    }),
+  );
   const least = Math.min(...tilts);
   tilts.forEach((tilt, i) => {
     const [cx, cy] = at(i, scale(tilt));
     const weakest = tilt === least && least < most - 1e-3;
-    picture.append(svg("circle", { cx, cy, r: weakest ? 4.5 : 3, class: weakest ? "tip weakest" : "tip" },
-      svg("title", {}, `${names[i]}: ${degrees(tilt)}`)));
+    picture.append(
+      svg(
+        "circle",
+        { cx, cy, r: weakest ? 4.5 : 3, class: weakest ? "tip weakest" : "tip" },
+        svg("title", {}, `${names[i]}: ${degrees(tilt)}`),
+      ),
+    );
   });
   for (const ring of [...rings, most]) {
     const [x, y] = at(-0.5, scale(ring));

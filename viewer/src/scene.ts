@@ -146,7 +146,8 @@ class SceneError extends Error {
 }
 
 function record(value: unknown, where: string): Json {
-  if (typeof value !== "object" || value === null || Array.isArray(value)) throw new SceneError(where, "is not an object");
+  if (typeof value !== "object" || value === null || Array.isArray(value))
+    throw new SceneError(where, "is not an object");
   return value as Json;
 }
 
@@ -236,7 +237,13 @@ function motion(value: unknown, where: string): Waypoint[] {
   }
   return Array.from(seconds, (at, i) => {
     const [x, y, z, qx, qy, qz, qw] = poses.subarray(7 * i, 7 * i + 7) as unknown as number[] as [
-      number, number, number, number, number, number, number,
+      number,
+      number,
+      number,
+      number,
+      number,
+      number,
+      number,
     ];
     return { seconds: at, position: [x, y, z], quaternion_xyzw: [qx, qy, qz, qw] };
   });
@@ -248,7 +255,10 @@ function object(value: unknown): SceneObject {
   const indices = new Uint32Array(bytes(o.indices, "object.indices", 12));
   const beyond = indices.findIndex((index) => index >= positions.length / 3);
   if (beyond >= 0) {
-    throw new SceneError(`object.indices[${beyond}]`, `is ${indices[beyond]}, but there are ${positions.length / 3} vertices`);
+    throw new SceneError(
+      `object.indices[${beyond}]`,
+      `is ${indices[beyond]}, but there are ${positions.length / 3} vertices`,
+    );
   }
   return {
     name: text(o.name, "object.name"),
@@ -306,7 +316,8 @@ function path(value: unknown, where: string): Path {
   const p = record(value, where);
   const waypoints = each(p.waypoints, `${where}.waypoints`, waypoint);
   const release = number(p.release, `${where}.release`);
-  if (!waypoints[release]) throw new SceneError(`${where}.release`, `is ${release}, but there are ${waypoints.length} waypoints`);
+  if (!waypoints[release])
+    throw new SceneError(`${where}.release`, `is ${release}, but there are ${waypoints.length} waypoints`);
   return {
     waypoints,
     release,
@@ -317,7 +328,8 @@ function path(value: unknown, where: string): Path {
 
 function hangingPose(value: unknown, where: string): HangingPose {
   const p = record(value, where);
-  const maybe = <T>(name: string, read: (value: unknown, where: string) => T) => orNull(p[name], `${where}.${name}`, read);
+  const maybe = <T>(name: string, read: (value: unknown, where: string) => T) =>
+    orNull(p[name], `${where}.${name}`, read);
   return {
     rank: number(p.rank, `${where}.rank`),
     release: pose(p.release, `${where}.release`),
@@ -381,11 +393,14 @@ export function readScene(json: string): Scene {
       motion: motion(record(f, where).motion, `${where}.motion`),
     })),
     counts: orNull(s.counts, "counts", (c, where) =>
-      all(c, where, ["released", "at_rest", "rotated_off", "slid_off", "moving"])) as Counts | null,
+      all(c, where, ["released", "at_rest", "rotated_off", "slid_off", "moving"]),
+    ) as Counts | null,
     rejection: orNull(s.rejection, "rejection", (r, where) => ({
       stage: text(record(r, where).stage, `${where}.stage`),
       reason: text(record(r, where).reason, `${where}.reason`),
     })),
-    seconds: orNull(s.seconds, "seconds", (t, where) => all(t, where, ["object", "supporter", "matching"])) as Scene["seconds"],
+    seconds: orNull(s.seconds, "seconds", (t, where) =>
+      all(t, where, ["object", "supporter", "matching"]),
+    ) as Scene["seconds"],
   };
 }

@@ -15,14 +15,18 @@ export function drawTriad(element: HTMLElement | SVGElement, camera: Camera, up:
     ["z", new Vector3(0, 0, 1)],
     ["g", new Vector3(...up).normalize().negate()],
   ];
-  const seen = axes.map(([name, axis]) => [name, axis.applyQuaternion(turn)] as const).sort(([, a], [, b]) => a.z - b.z);
-  element.replaceChildren(...seen.flatMap(([name, { x, y }]) => {
-    const [tipX, tipY] = [LENGTH * x, -LENGTH * y];
-    const far = Math.max(Math.hypot(x, y), 1e-3);
-    const [textX, textY] = [tipX + (8 * x) / far, tipY - (8 * y) / far];
-    return [
-      svg("line", { x1: 0, y1: 0, x2: tipX, y2: tipY, class: `axis-${name}` }),
-      svg("text", { x: textX, y: textY + 3.5, class: `axis-${name}` }, name),
-    ];
-  }));
+  const seen = axes
+    .map(([name, axis]) => [name, axis.applyQuaternion(turn)] as const)
+    .sort(([, a], [, b]) => a.z - b.z);
+  element.replaceChildren(
+    ...seen.flatMap(([name, { x, y }]) => {
+      const [tipX, tipY] = [LENGTH * x, -LENGTH * y];
+      const far = Math.max(Math.hypot(x, y), 1e-3);
+      const [textX, textY] = [tipX + (8 * x) / far, tipY - (8 * y) / far];
+      return [
+        svg("line", { x1: 0, y1: 0, x2: tipX, y2: tipY, class: `axis-${name}` }),
+        svg("text", { x: textX, y: textY + 3.5, class: `axis-${name}` }, name),
+      ];
+    }),
+  );
 }

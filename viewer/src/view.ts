@@ -1,4 +1,4 @@
-// The picture: everything of the scene in three dimensions, the camera and the labels. It draws only when something changed.
+// The picture: the scene in three dimensions, the camera and the labels. It is drawn only when something changed.
 
 import {
   Box3,
@@ -193,7 +193,10 @@ export class View {
   private theme: Theme = "light";
   gridCell = 0;
 
-  constructor(private readonly host: HTMLElement, private readonly scene: Scene) {
+  constructor(
+    private readonly host: HTMLElement,
+    private readonly scene: Scene,
+  ) {
     this.renderer = new WebGLRenderer({ antialias: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.domElement.tabIndex = 0;
@@ -324,7 +327,12 @@ export class View {
     }
     if (poses.length > 1) this.layer("others", "Other poses", "object", false, [this.others]);
     if (fallen.length > 0) {
-      this.fell.add(...this.ghosts(fallen.map((one) => matrixOf(one.release)), "fallen"));
+      this.fell.add(
+        ...this.ghosts(
+          fallen.map((one) => matrixOf(one.release)),
+          "fallen",
+        ),
+      );
       this.layer("fallen", "Released, but fell", "fallen", false, [this.fell]);
     }
     const small = this.radius / 90;
@@ -365,15 +373,29 @@ export class View {
   }
 
   /** A camera as a pyramid with its tip at the place of the camera. */
-  private cameraSign(at: Vector3, towards: Vector3, up: Vector3, size: number, material: LineBasicMaterial): LineSegments {
+  private cameraSign(
+    at: Vector3,
+    towards: Vector3,
+    up: Vector3,
+    size: number,
+    material: LineBasicMaterial,
+  ): LineSegments {
     const forward = towards.clone().sub(at).normalize();
     const side = forward.clone().cross(up);
     if (side.lengthSq() < 1e-6) side.set(1, 0, 0).cross(forward);
     side.normalize().multiplyScalar(0.6 * size);
-    const top = side.clone().cross(forward).normalize().multiplyScalar(0.45 * size);
+    const top = side
+      .clone()
+      .cross(forward)
+      .normalize()
+      .multiplyScalar(0.45 * size);
     const middle = at.clone().addScaledVector(forward, size);
-    const corners = [[1, 1], [1, -1], [-1, -1], [-1, 1]].map(([s, t]) =>
-      middle.clone().addScaledVector(side, s!).addScaledVector(top, t!));
+    const corners = [
+      [1, 1],
+      [1, -1],
+      [-1, -1],
+      [-1, 1],
+    ].map(([s, t]) => middle.clone().addScaledVector(side, s!).addScaledVector(top, t!));
     const ends = corners.flatMap((corner, i) => [at, corner, corner, corners[(i + 1) % 4]!]);
     return new LineSegments(new BufferGeometry().setFromPoints(ends), material);
   }
@@ -426,7 +448,9 @@ export class View {
     lines.quaternion.setFromUnitVectors(Y, this.up);
     let lowest = Infinity;
     for (let corner = 0; corner < 8; corner++) {
-      const at = new Vector3(...[0, 1, 2].map((k) => (corner & (1 << k) ? box.max : box.min).getComponent(k)) as [number, number, number]);
+      const at = new Vector3(
+        ...([0, 1, 2].map((k) => (corner & (1 << k) ? box.max : box.min).getComponent(k)) as [number, number, number]),
+      );
       lowest = Math.min(lowest, at.dot(this.up));
     }
     const centre = box.getCenter(new Vector3());
@@ -447,7 +471,8 @@ export class View {
     mesh.frustumCulled = false;
     mesh.renderOrder = 1;
     const centres = matrices.flatMap((matrix) =>
-      new Vector3(...this.scene.object.centreOfMass).applyMatrix4(matrix).toArray());
+      new Vector3(...this.scene.object.centreOfMass).applyMatrix4(matrix).toArray(),
+    );
     const dots = this.dots(new Float32Array(centres), colour, this.radius / 18);
     this.paint();
     return [mesh, dots];
@@ -485,7 +510,9 @@ export class View {
   /** The other poses, if they are to be seen: they may be many. */
   private addOthers(): void {
     if (!this.chosen || !this.isOn("others") || this.others.children.length > 0) return;
-    const others = this.scene.poses.filter((other) => other !== this.chosen).map((other) => matrixOf(other.rest ?? other.release));
+    const others = this.scene.poses
+      .filter((other) => other !== this.chosen)
+      .map((other) => matrixOf(other.rest ?? other.release));
     this.others.add(...this.untinted(() => this.ghosts(others, "object")));
   }
 
@@ -502,7 +529,10 @@ export class View {
     group.traverse((thing) => {
       if (thing instanceof CSS2DObject) thing.element.remove();
       if (thing instanceof InstancedMesh) thing.dispose();
-      if ((thing instanceof Mesh || thing instanceof Line || thing instanceof Points) && thing.geometry !== this.objectGeometry) {
+      if (
+        (thing instanceof Mesh || thing instanceof Line || thing instanceof Points) &&
+        thing.geometry !== this.objectGeometry
+      ) {
         thing.geometry.dispose();
       }
     });
@@ -524,7 +554,8 @@ export class View {
     tip.position.y = length - head / 2;
     const foot = new Mesh(new SphereGeometry(1.8 * thick, 16, 12), this.forceMaterial);
     const arrow = new Group().add(shaft, tip, foot);
-    if (force >= WORTH_A_LABEL) arrow.add(this.label(`${percent(force)} of the weight`, "force", new Vector3(0, length, 0)));
+    if (force >= WORTH_A_LABEL)
+      arrow.add(this.label(`${percent(force)} of the weight`, "force", new Vector3(0, length, 0)));
     arrow.position.set(...position);
     arrow.quaternion.setFromUnitVectors(Y, new Vector3(...normal).normalize());
     arrow.traverse((thing) => (thing.renderOrder = 4));
@@ -535,7 +566,10 @@ export class View {
     const rest = matrixOf(pose.rest ?? pose.release);
     const turn = new Quaternion().setFromRotationMatrix(rest);
     const centre = this.centre.clone().applyMatrix4(rest);
-    const { object_view, supporter_view } = pose.unseen ?? { object_view: [0, 0, 0] as Vec3, supporter_view: [0, 0, 0] as Vec3 };
+    const { object_view, supporter_view } = pose.unseen ?? {
+      object_view: [0, 0, 0] as Vec3,
+      supporter_view: [0, 0, 0] as Vec3,
+    };
     const add = (direction: Vector3, distance: number, name: string) => {
       if (direction.lengthSq() === 0) return;
       const material = new LineBasicMaterial({ color: new Color(PALETTES[this.theme].nextView) });
@@ -650,15 +684,18 @@ export class View {
   follow(places: readonly Matrix4[], contacts: readonly Contact[]): void {
     const sphere = this.sphere(places, contacts);
     const reach = sphere.center.distanceTo(this.framed.center) + sphere.radius;
-    if (reach > 1.15 * this.framed.radius || sphere.radius < 0.65 * this.framed.radius) this.frame(sphere, this.direction());
+    if (reach > 1.15 * this.framed.radius || sphere.radius < 0.65 * this.framed.radius)
+      this.frame(sphere, this.direction());
   }
 
   private direction(): Vector3 {
     return this.camera.position.clone().sub(this.controls.target).normalize();
   }
 
-  /** A direction from which much of the object is seen, and little of the supporter stands before it: rather from the side and
-   * the front of the way in which it hangs off the supporter. */
+  /**
+   * A direction from which much of the object is seen, and little of the supporter stands before it: rather from the side
+   * and the front of the way in which it hangs off the supporter.
+   */
   private side(matrix: Matrix4): Vector3 {
     const { ahead, aside } = axesOf(this.up);
     const { positions } = this.scene.supporter.points;
@@ -683,13 +720,23 @@ export class View {
         if (ahead > 0 && across.copy(point).addScaledVector(direction, -ahead).length() < 0.6 * this.radius) before++;
       }
       const fromTheSide = Math.sqrt(Math.max(1 - direction.dot(offset) ** 2, 0));
-      return seen + 0.3 * fromTheSide + 0.2 * direction.dot(offset) - 0.05 * direction.dot(aside) - Math.min(before / near, 1);
+      return (
+        seen +
+        0.3 * fromTheSide +
+        0.2 * direction.dot(offset) -
+        0.05 * direction.dot(aside) -
+        Math.min(before / near, 1)
+      );
     };
     let [best, worthOfBest] = [ahead, -Infinity];
     for (let i = 0; i < DIRECTIONS; i++) {
       const angle = (2 * Math.PI * i) / DIRECTIONS;
-      const direction = ahead.clone().multiplyScalar(Math.cos(angle)).addScaledVector(aside, Math.sin(angle))
-        .multiplyScalar(Math.cos(ELEVATION)).addScaledVector(this.up, Math.sin(ELEVATION));
+      const direction = ahead
+        .clone()
+        .multiplyScalar(Math.cos(angle))
+        .addScaledVector(aside, Math.sin(angle))
+        .multiplyScalar(Math.cos(ELEVATION))
+        .addScaledVector(this.up, Math.sin(ELEVATION));
       const its = worth(direction);
       if (its > worthOfBest) [best, worthOfBest] = [direction, its];
     }
@@ -703,14 +750,20 @@ export class View {
     if (box.isEmpty()) return new Matrix4();
     const half = box.getSize(new Vector3()).multiplyScalar(0.5);
     const reach = Math.abs(half.dot(new Vector3(Math.abs(ahead.x), Math.abs(ahead.y), Math.abs(ahead.z))));
-    const at = box.getCenter(new Vector3()).addScaledVector(ahead, reach + 1.2 * this.radius).sub(this.centre);
+    const at = box
+      .getCenter(new Vector3())
+      .addScaledVector(ahead, reach + 1.2 * this.radius)
+      .sub(this.centre);
     return new Matrix4().setPosition(at);
   }
 
   private frame(sphere: Sphere, direction: Vector3): void {
     this.framed = sphere;
     const half = (FIELD_OF_VIEW * Math.PI) / 360;
-    const narrow = Math.min(half, Math.atan(Math.tan(half) * this.camera.aspect * (1 - this.free / this.host.clientWidth)));
+    const narrow = Math.min(
+      half,
+      Math.atan(Math.tan(half) * this.camera.aspect * (1 - this.free / this.host.clientWidth)),
+    );
     const distance = (0.97 * sphere.radius) / Math.sin(narrow);
     this.camera.near = distance / 200;
     this.camera.far = distance * 60;
@@ -768,7 +821,10 @@ export class View {
     this.renderer.setSize(clientWidth, clientHeight);
     this.renderer.render(this.three, this.camera);
     const done = new Promise<Blob>((resolve, reject) =>
-      this.renderer.domElement.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the browser gave no picture")))));
+      this.renderer.domElement.toBlob((blob) =>
+        blob ? resolve(blob) : reject(new Error("the browser gave no picture")),
+      ),
+    );
     return done.finally(() => {
       this.renderer.setPixelRatio(ratio);
       this.resize();
@@ -779,4 +835,3 @@ export class View {
     return this.renderer.domElement;
   }
 }
-

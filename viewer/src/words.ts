@@ -4,7 +4,10 @@ import { Vector3 } from "three";
 import { axesOf, nameOf } from "./axes";
 
 const KINDS: Record<string, { name: string; means: string }> = {
-  threaded: { name: "Threaded", means: "A bar of the supporter runs through a loop of the object. Only the way past the end of the bar frees it." },
+  threaded: {
+    name: "Threaded",
+    means: "A bar of the supporter runs through a loop of the object. Only the way past the end of the bar frees it.",
+  },
   hooked: { name: "Hooked", means: "An open hook of the one holds the other. Lifting frees it." },
   capped: { name: "Capped", means: "The object stands over a tip of the supporter with its cavity. Lifting frees it." },
   balanced: { name: "Balanced", means: "Friction or balance holds it. A push frees it." },
@@ -22,7 +25,10 @@ export function kindOf(kind: string | null): { name: string; means: string } {
 
 const FATES: Record<string, { name: string; means: string }> = {
   rotates_off: { name: "Rotates off", means: "Released here, the object turns and falls off the supporter." },
-  slides_off: { name: "Slides off", means: "Released here, the object slides off the supporter or falls through it without turning much." },
+  slides_off: {
+    name: "Slides off",
+    means: "Released here, the object slides off the supporter or falls through it without turning much.",
+  },
   moves: { name: "Keeps moving", means: "Released here, the object still moves when the time is up." },
 };
 

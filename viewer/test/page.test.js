@@ -1,5 +1,5 @@
-// The page in Chromium: on scenes of our own, and on the pages whose paths are in HANGPOSE_PAGES, separated by ":", which
-// hangpose wrote. Chromium is that of CHROMIUM, else the one in the PATH.
+// The page in Chromium: on scenes from formulas, and on the pages whose paths are in HANGPOSE_PAGES, separated by ":",
+// which hangpose wrote. Chromium is that of CHROMIUM, else the one in the PATH.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -14,7 +14,11 @@ import { empty, page as written, pose, published, scene, sceneOf } from "./scene
 
 const PICTURES = fileURLToPath(new URL("../../build/view/", import.meta.url));
 const GIVEN = (process.env.HANGPOSE_PAGES ?? "").split(":").filter(Boolean);
-const CHROMIUM = process.env.CHROMIUM ?? execFileSync("sh", ["-c", "command -v chromium || command -v chromium-browser || command -v google-chrome"]).toString().trim();
+const CHROMIUM =
+  process.env.CHROMIUM ??
+  execFileSync("sh", ["-c", "command -v chromium || command -v chromium-browser || command -v google-chrome"])
+    .toString()
+    .trim();
 /** Largest difference of an entry of a matrix: the page computes in double precision from the same numbers. */
 const EXACT = 1e-6;
 
@@ -25,7 +29,8 @@ before(async () => {
   folder = await mkdtemp(join(tmpdir(), "hangpose-view-"));
   await mkdir(PICTURES, { recursive: true });
   browser = await puppeteer.launch({
-    executablePath: CHROMIUM, args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--force-color-profile=srgb"],
+    executablePath: CHROMIUM,
+    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--force-color-profile=srgb"],
   });
 });
 
@@ -34,8 +39,12 @@ after(async () => {
   await rm(folder, { recursive: true, force: true });
 });
 
-/** Opens a page, and fails the test on errors of the page, other than the one that is meant, and on requests that it makes. */
-async function open(t, html, { width = 1000, height = 640, scale = 1, scheme = "light", prepare = null, meant = null } = {}) {
+/** Opens a page. Errors of the page, other than the one that is meant, and requests that it makes fail the test. */
+async function open(
+  t,
+  html,
+  { width = 1000, height = 640, scale = 1, scheme = "light", prepare = null, meant = null } = {},
+) {
   const file = join(folder, `${t.name.replace(/\W+/g, "_")}_${Math.random().toString(36).slice(2)}.html`);
   await writeFile(file, html);
   const page = await browser.newPage();
@@ -49,7 +58,11 @@ async function open(t, html, { width = 1000, height = 640, scale = 1, scheme = "
   await page.goto(pathToFileURL(file).href);
   t.after(async () => {
     await page.close();
-    assert.deepEqual(errors.filter((error) => !meant?.test(error)), [], "errors in the console");
+    assert.deepEqual(
+      errors.filter((error) => !meant?.test(error)),
+      [],
+      "errors in the console",
+    );
     const made = requests.filter((url) => !/^(data|blob|about):/.test(url));
     assert.deepEqual(made, [pathToFileURL(file).href], "requests");
   });
@@ -58,7 +71,8 @@ async function open(t, html, { width = 1000, height = 640, scale = 1, scheme = "
 
 const ready = (page) => page.evaluate(() => window.hangpose.ready);
 const state = (page) => page.evaluate(() => window.hangpose.state());
-const drawn = (page) => page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() => resolve()))));
+const drawn = (page) =>
+  page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() => resolve()))));
 
 function near(got, wanted, what) {
   const worst = Math.max(...wanted.map((value, i) => Math.abs(value - got[i])));
@@ -84,7 +98,12 @@ function look(page) {
         y += Math.floor(i / 4 / image.width);
       }
     }
-    return { colours: colours.size, orange: orange / (data.length / 4), x: x / orange / image.width, y: y / orange / image.height };
+    return {
+      colours: colours.size,
+      orange: orange / (data.length / 4),
+      x: x / orange / image.width,
+      y: y / orange / image.height,
+    };
   });
 }
 
@@ -155,7 +174,10 @@ async function checkWhole(t, html) {
         await done;
         return seen.filter((time) => time !== "end");
       });
-      assert.ok(times.every((time, i) => i === 0 || time >= times[i - 1]), "time goes on");
+      assert.ok(
+        times.every((time, i) => i === 0 || time >= times[i - 1]),
+        "time goes on",
+      );
       const end = await state(page);
       assert.equal(end.playing, false);
       assert.equal(end.seconds, end.duration);
@@ -171,11 +193,12 @@ async function checkWhole(t, html) {
       await page.keyboard.press("p");
       const whole = await state(page);
       assert.equal(whole.sequence, "path");
-      const slide = (share) => page.evaluate((value) => {
-        const slider = document.querySelector("#time");
-        slider.value = String(value);
-        slider.dispatchEvent(new Event("input", { bubbles: true }));
-      }, 1000 * share);
+      const slide = (share) =>
+        page.evaluate((value) => {
+          const slider = document.querySelector("#time");
+          slider.value = String(value);
+          slider.dispatchEvent(new Event("input", { bubbles: true }));
+        }, 1000 * share);
       const { waypoints } = path;
       await slide(0);
       near((await state(page)).matrix, matrixOf(waypoints[0]), "start");
@@ -183,14 +206,25 @@ async function checkWhole(t, html) {
       near((await state(page)).matrix, matrixOf(waypoints[waypoints.length - 1]), "end");
       // What is before the first waypoint is the gripper's approach, when the object is taken off.
       const shift = Math.max(0, whole.duration - Math.max(...waypoints.map((w) => w.seconds)));
-      const takesOff = Math.hypot(...rest.position.map((p, i) => p - waypoints[0].position[i]))
-        < Math.hypot(...rest.position.map((p, i) => p - waypoints[waypoints.length - 1].position[i]));
-      await page.evaluate((seconds) => window.hangpose.seek(seconds), waypoints[path.release].seconds + (takesOff ? shift : 0));
+      const takesOff =
+        Math.hypot(...rest.position.map((p, i) => p - waypoints[0].position[i])) <
+        Math.hypot(...rest.position.map((p, i) => p - waypoints[waypoints.length - 1].position[i]));
+      await page.evaluate(
+        (seconds) => window.hangpose.seek(seconds),
+        waypoints[path.release].seconds + (takesOff ? shift : 0),
+      );
       near((await state(page)).matrix, matrixOf(waypoints[path.release]), "release pose");
-      near(matrixOf(waypoints[path.release]).map((v, i) => v - matrixOf(release)[i]), Array(16).fill(0), "the path leads to the release pose");
+      near(
+        matrixOf(waypoints[path.release]).map((v, i) => v - matrixOf(release)[i]),
+        Array(16).fill(0),
+        "the path leads to the release pose",
+      );
       const middle = Math.max(1, Math.floor(waypoints.length / 2));
       const [a, b] = [waypoints[middle - 1], waypoints[middle]];
-      await page.evaluate((seconds) => window.hangpose.seek(seconds), (a.seconds + b.seconds) / 2 + (takesOff ? shift : 0));
+      await page.evaluate(
+        (seconds) => window.hangpose.seek(seconds),
+        (a.seconds + b.seconds) / 2 + (takesOff ? shift : 0),
+      );
       near((await state(page)).matrix, halfway(a, b, data.object.centre_of_mass), "between two waypoints");
       if (data.gripper && path.gripper.length > 0 && !takesOff) {
         await page.evaluate(() => window.hangpose.seek(0));
@@ -226,7 +260,10 @@ async function checkWhole(t, html) {
     await page.setViewport({ width: 360, height: 740, deviceScaleFactor: 1 });
     await page.evaluate(() => document.querySelectorAll("details").forEach((one) => (one.open = true)));
     await drawn(page);
-    const wide = await page.evaluate(() => [document.documentElement.scrollWidth, ...[...document.querySelectorAll("#details, #items, #bar, #transport")].map((e) => e.scrollWidth)]);
+    const wide = await page.evaluate(() => [
+      document.documentElement.scrollWidth,
+      ...[...document.querySelectorAll("#details, #items, #bar, #transport")].map((e) => e.scrollWidth),
+    ]);
     assert.ok(Math.max(...wide) <= 360, String(wide));
   });
   return page;
@@ -262,17 +299,22 @@ test("30 000 triangles, 30 000 points and 200 poses", async (t) => {
   assert.equal(now.pose, 30);
   near(now.matrix, matrixOf(pose(30).rest), "pose 30");
   const inSight = await page.evaluate(() => {
-    const [list, item] = ["#items", "#items [aria-current]"].map((s) => document.querySelector(s).getBoundingClientRect());
+    const [list, item] = ["#items", "#items [aria-current]"].map((s) =>
+      document.querySelector(s).getBoundingClientRect(),
+    );
     return item.top >= list.top - 1 && item.bottom <= list.bottom + 1;
   });
   assert.ok(inSight, "the chosen pose is scrolled into sight");
   await page.evaluate(() => window.hangpose.select(199));
-  await assert.rejects(page.evaluate(() => window.hangpose.select(200)), /there are 200 poses/);
+  await assert.rejects(
+    page.evaluate(() => window.hangpose.select(200)),
+    /there are 200 poses/,
+  );
   assert.ok((await look(page)).orange > 0.005);
 });
 
 test("keys, buttons and themes", async (t) => {
-  const page = await open(t, await written(scene(), "keys"));
+  const page = await open(t, await written(scene(), "keys"), { width: 1280, height: 800 });
   await ready(page);
   await page.keyboard.press("?");
   assert.equal((await state(page)).help, true);
@@ -322,9 +364,17 @@ test("text is legible in both themes, and every control has a name", async (t) =
   for (const theme of ["light", "dark"]) {
     const low = await page.evaluate((name) => {
       window.hangpose.setTheme(name);
-      const numbers = (colour) => /\(([^)]*)\)/.exec(colour)[1].split(/[\s,/]+/).filter(Boolean).map(Number);
-      const luminance = (rgb) => rgb.map((v) => v / 255).map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4))
-        .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
+      const numbers = (colour) =>
+        /\(([^)]*)\)/
+          .exec(colour)[1]
+          .split(/[\s,/]+/)
+          .filter(Boolean)
+          .map(Number);
+      const luminance = (rgb) =>
+        rgb
+          .map((v) => v / 255)
+          .map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4))
+          .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
       const behind = (element) => {
         for (let at = element; at; at = at.parentElement) {
           const colour = getComputedStyle(at).backgroundColor;
@@ -336,15 +386,24 @@ test("text is legible in both themes, and every control has a name", async (t) =
       for (const element of document.querySelectorAll("#bar *, #list *, #details *, #transport *")) {
         const own = [...element.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim());
         if (!own || element.closest(":disabled") || element.namespaceURI.endsWith("svg")) continue;
-        const [a, b] = [luminance(numbers(getComputedStyle(element).color).slice(0, 3)), luminance(behind(element))].sort((x, y) => y - x);
-        if ((a + 0.05) / (b + 0.05) < 4.5) bad.push(`${element.tagName}.${element.className} ${element.textContent} ${((a + 0.05) / (b + 0.05)).toFixed(2)}`);
+        const [a, b] = [
+          luminance(numbers(getComputedStyle(element).color).slice(0, 3)),
+          luminance(behind(element)),
+        ].sort((x, y) => y - x);
+        if ((a + 0.05) / (b + 0.05) < 4.5)
+          bad.push(
+            `${element.tagName}.${element.className} ${element.textContent} ${((a + 0.05) / (b + 0.05)).toFixed(2)}`,
+          );
       }
       return bad;
     }, theme);
     assert.deepEqual(low, [], theme);
   }
-  const nameless = await page.evaluate(() => [...document.querySelectorAll("button, input, select, summary, canvas, svg.rose")]
-    .filter((e) => !(e.getAttribute("aria-label") || e.innerText?.trim() || e.closest("label")?.textContent.trim())).map((e) => e.outerHTML));
+  const nameless = await page.evaluate(() =>
+    [...document.querySelectorAll("button, input, select, summary, canvas, svg.rose")]
+      .filter((e) => !(e.getAttribute("aria-label") || e.innerText?.trim() || e.closest("label")?.textContent.trim()))
+      .map((e) => e.outerHTML),
+  );
   assert.deepEqual(nameless, []);
 });
 
@@ -390,7 +449,11 @@ test("without WebGL the page says so and keeps its tables", async (t) => {
 test("in a frame with srcdoc and without the rights of its origin, as in a notebook", async (t) => {
   const inside = await written(scene(), "frame");
   const attribute = inside.replaceAll("&", "&amp;").replaceAll('"', "&quot;");
-  const page = await open(t, `<!doctype html><title>notebook</title><link rel="icon" href="data:,"><iframe sandbox="allow-scripts" width="900" height="600" srcdoc="${attribute}"></iframe>`);
+  const page = await open(
+    t,
+    `<!doctype html><title>notebook</title><link rel="icon" href="data:,">
+    <iframe sandbox="allow-scripts" width="900" height="600" srcdoc="${attribute}"></iframe>`,
+  );
   const frame = await (await page.waitForSelector("iframe")).contentFrame();
   await frame.waitForFunction(() => window.hangpose?.state);
   await frame.evaluate(() => window.hangpose.ready);

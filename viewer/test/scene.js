@@ -49,22 +49,42 @@ export function pose(i) {
   const x = 0.01 * ((i % 9) - 4);
   const release = turned([x, 0, hang + 0.001], 0.3 + 0.01 * i);
   const rest = turned([x, 0.0005, hang], 0.02 * i);
-  const swing = Array.from({ length: 31 }, (_, k) => turned(
-    [x, (0.0005 * k) / 30, hang + 0.001 * (1 - k / 30)], 0.02 * i + (0.3 - 0.01 * i) * (1 - k / 30) * Math.cos(k / 4)));
+  const swing = Array.from({ length: 31 }, (_, k) =>
+    turned(
+      [x, (0.0005 * k) / 30, hang + 0.001 * (1 - k / 30)],
+      0.02 * i + (0.3 - 0.01 * i) * (1 - k / 30) * Math.cos(k / 4),
+    ),
+  );
   return {
-    rank: i + 1, release, rest, kind: ["threaded", "hooked", "capped", "balanced"][i % 4],
-    probability: 0.98 / (1 + 0.2 * i), robustness: 0.95 / (1 + 0.3 * i), sinking: 0.001, clearance: 0.001,
+    rank: i + 1,
+    release,
+    rest,
+    kind: ["threaded", "hooked", "capped", "balanced"][i % 4],
+    probability: 0.98 / (1 + 0.2 * i),
+    robustness: 0.95 / (1 + 0.3 * i),
+    sinking: 0.001,
+    clearance: 0.001,
     tolerance: { position: 0.0009, rotation: 0.0146 },
-    unseen: i === 0
-      ? { object: 0, shadow: 0, supporter: 0, object_view: [0, 0, 0], supporter_view: [0, 0, 0] }
-      : { object: 0.4, shadow: 0.1, supporter: 0.2, object_view: [0.6, 0, 0.8], supporter_view: [0, 1, 0] },
+    unseen:
+      i === 0
+        ? { object: 0, shadow: 0, supporter: 0, object_view: [0, 0, 0], supporter_view: [0, 0, 0] }
+        : { object: 0.4, shadow: 0.1, supporter: 0.2, object_view: [0.6, 0, 0.8], supporter_view: [0, 1, 0] },
     margin: {
-      tilts: i === 0 ? Array(8).fill(1.2) : [0.5, 0.6, 0.9, 1.2, 1.2, 1.1, 0.7, 0], jolt_time: i === 0 ? 1 : 0.4,
-      tilted_sinking: 1e-6, escape_rise: 0.03, centre_of_mass_radius: 0.02, escape_ratio: 0.7, knock_speed: 0.8,
+      tilts: i === 0 ? Array(8).fill(1.2) : [0.5, 0.6, 0.9, 1.2, 1.2, 1.1, 0.7, 0],
+      jolt_time: i === 0 ? 1 : 0.4,
+      tilted_sinking: 1e-6,
+      escape_rise: 0.03,
+      centre_of_mass_radius: 0.02,
+      escape_ratio: 0.7,
+      knock_speed: 0.8,
     },
-    contacts: [{ position: [x, 0, ROD], normal: [0, 0, 1], force: 1 }, { position: [x + 0.004, 0.003, 0.004], normal: [0, 0.6, 0.8], force: 0.2 }],
+    contacts: [
+      { position: [x, 0, ROD], normal: [0, 0, 1], force: 1 },
+      { position: [x + 0.004, 0.003, 0.004], normal: [0, 0.6, 0.8], force: 0.2 },
+    ],
     motion: motion([release, ...swing.slice(1, -1), rest], 1 / 60),
-    path: null, path_failure: null,
+    path: null,
+    path_failure: null,
   };
 }
 
@@ -79,8 +99,13 @@ export function path(pose) {
     { seconds: 1.0, ...pose.rest },
   ];
   return {
-    waypoints, release: 2, clearance: 0.004,
-    gripper: [{ seconds: 1.0, ...pose.rest }, { seconds: 1.5, ...turned([x, -0.1, -0.06], 0.2) }],
+    waypoints,
+    release: 2,
+    clearance: 0.004,
+    gripper: [
+      { seconds: 1.0, ...pose.rest },
+      { seconds: 1.5, ...turned([x, -0.1, -0.06], 0.2) },
+    ],
   };
 }
 
@@ -93,21 +118,34 @@ export function scene(changes = {}, { around = 48, across = 16, points = 3000, p
   if (list[1]) list[1].path_failure = { message: "the release pose is enclosed" };
   const fall = (fate, i) => {
     const release = turned([0.02 * i - 0.02, 0.01, 0.03], 0.4 * i);
-    const frames = Array.from({ length: 25 }, (_, k) => turned([release.position[0], 0.01 + 0.001 * k, 0.03 - 0.0003 * k * k], 0.4 * i + 0.05 * k));
+    const frames = Array.from({ length: 25 }, (_, k) =>
+      turned([release.position[0], 0.01 + 0.001 * k, 0.03 - 0.0003 * k * k], 0.4 * i + 0.05 * k),
+    );
     return { fate, release, motion: motion(frames, 1 / 60) };
   };
   return {
-    schema: 1, version: "0.1.0", most_tilt: 1.2,
+    schema: 1,
+    version: "0.1.0",
+    most_tilt: 1.2,
     object: {
-      name: "ring <b>&amp;</b>.obj", triangle_count: mesh.indices.length / 3, positions: f32(mesh.positions), indices: u32(mesh.indices),
-      centre_of_mass: [0, 0, 0], samples: f32(mesh.positions.slice(0, 300)),
+      name: "ring <b>&amp;</b>.obj",
+      triangle_count: mesh.indices.length / 3,
+      positions: f32(mesh.positions),
+      indices: u32(mesh.indices),
+      centre_of_mass: [0, 0, 0],
+      samples: f32(mesh.positions.slice(0, 300)),
       contacts: { positions: f32([0, 0, RING - TUBE, 0, 0, -RING - TUBE]), normals: f32([0, 0, -1, 0, 0, -1]) },
       viewpoints: [[0.3, 0.1, 0.1]],
     },
     supporter: {
-      name: "rod.ply", point_count: 120000, up: [0, 0, 1], points: f32(cloud.points), normals: f32(cloud.normals),
+      name: "rod.ply",
+      point_count: 120000,
+      up: [0, 0, 1],
+      points: f32(cloud.points),
+      normals: f32(cloud.normals),
       guessed: f32(cloud.points.slice(0, 900).map((v, i) => (i % 3 === 2 ? -Math.abs(v) - 0.001 : v))),
-      contacts: { positions: f32([0, 0, ROD]), normals: f32([0, 0, 1]) }, viewpoints: [[0.1, 0.4, 0.3]],
+      contacts: { positions: f32([0, 0, ROD]), normals: f32([0, 0, 1]) },
+      viewpoints: [[0.1, 0.4, 0.3]],
     },
     obstacles: f32([0.2, 0.2, 0, 0.2, 0.21, 0, 0.2, 0.2, 0.01]),
     gripper: {
@@ -118,8 +156,10 @@ export function scene(changes = {}, { around = 48, across = 16, points = 3000, p
       ],
       retreat: [0, -0.1, 0],
     },
-    poses: list, fallen: ["rotates_off", "slides_off", "moves"].map(fall),
-    counts: { released: 9, at_rest: 4, rotated_off: 2, slid_off: 2, moving: 1 }, rejection: null,
+    poses: list,
+    fallen: ["rotates_off", "slides_off", "moves"].map(fall),
+    counts: { released: 9, at_rest: 4, rotated_off: 2, slid_off: 2, moving: 1 },
+    rejection: null,
     seconds: { object: 0.064, supporter: 0.036, matching: 0.088 },
     ...changes,
   };
@@ -129,10 +169,28 @@ export function scene(changes = {}, { around = 48, across = 16, points = 3000, p
 export function published() {
   const { rank, release } = pose(0);
   const bare = {
-    rank, release, rest: null, kind: null, probability: null, robustness: null, sinking: null, clearance: null, tolerance: null,
-    unseen: null, margin: null, contacts: null, motion: motion([], 1), path: null, path_failure: null,
+    rank,
+    release,
+    rest: null,
+    kind: null,
+    probability: null,
+    robustness: null,
+    sinking: null,
+    clearance: null,
+    tolerance: null,
+    unseen: null,
+    margin: null,
+    contacts: null,
+    motion: motion([], 1),
+    path: null,
+    path_failure: null,
   };
-  return scene({ poses: [bare, { rank: 2, release: pose(3).release, motion: motion([], 1) }], fallen: [], gripper: null, seconds: null });
+  return scene({
+    poses: [bare, { rank: 2, release: pose(3).release, motion: motion([], 1) }],
+    fallen: [],
+    gripper: null,
+    seconds: null,
+  });
 }
 
 /** A scene in which nothing hangs and every array is empty. */
@@ -140,7 +198,13 @@ export function empty() {
   const full = scene();
   const none = { positions: "", normals: "" };
   return {
-    ...full, poses: [], fallen: [], obstacles: "", gripper: null, counts: null, seconds: null,
+    ...full,
+    poses: [],
+    fallen: [],
+    obstacles: "",
+    gripper: null,
+    counts: null,
+    seconds: null,
     object: { ...full.object, samples: "", contacts: none, viewpoints: [] },
     supporter: { ...full.supporter, normals: "", guessed: "", contacts: none, viewpoints: [] },
     rejection: { stage: "too_loose", reason: "no released pose stays: most often a small disturbance brings it down" },
@@ -154,7 +218,9 @@ export async function page(scene, title) {
   const { readFile } = await import("node:fs/promises");
   const json = JSON.stringify(scene).replaceAll("<", "\\u003c");
   const escaped = title.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
-  return (await readFile(TEMPLATE, "utf8")).replace("__HANGPOSE_TITLE__", () => escaped).replace("__HANGPOSE_SCENE__", () => json);
+  return (await readFile(TEMPLATE, "utf8"))
+    .replace("__HANGPOSE_TITLE__", () => escaped)
+    .replace("__HANGPOSE_SCENE__", () => json);
 }
 
 /** The scene of a page that hangpose wrote. */
