@@ -45,6 +45,11 @@ pkg-config --exists eigen3 2>/dev/null || missing+=(libeigen3-dev)
 # The comparison of the binary interface with the stored one, and colcon, which scripts/colcon.sh installs.
 command -v abidiff >/dev/null || missing+=(abigail-tools)
 python3 -m venv --help >/dev/null 2>&1 && python3 -m ensurepip --version >/dev/null 2>&1 || missing+=(python3-venv)
+# The tools that build and test the page of viewer/, from Node.js 18 on.
+command -v node >/dev/null || missing+=(nodejs)
+command -v npm >/dev/null || missing+=(npm)
+command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null ||
+    missing+=(chromium)
 
 if command -v rustup >/dev/null; then
     have=$(rustup component list --installed)
