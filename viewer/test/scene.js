@@ -132,7 +132,7 @@ export function scene(changes = {}, { around = 48, across = 16, points = 3000, p
       triangle_count: mesh.indices.length / 3,
       positions: f32(mesh.positions),
       indices: u32(mesh.indices),
-      centre_of_mass: [0, 0, 0],
+      centre_of_mass: [0, 0.002, -0.004],
       samples: f32(mesh.positions.slice(0, 300)),
       contacts: { positions: f32([0, 0, RING - TUBE, 0, 0, -RING - TUBE]), normals: f32([0, 0, -1, 0, 0, -1]) },
       viewpoints: [[0.3, 0.1, 0.1]],
