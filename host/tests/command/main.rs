@@ -1,6 +1,7 @@
 //! Runs of the command `hangpose` on shapes with known results.
 
 mod bad_input;
+mod batch;
 mod depth;
 mod how_and_where;
 mod inspect;
