@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-hangpose=$(realpath "${1:-target/debug/hangpose}")
+hangpose=$(realpath "${1:-${CARGO_TARGET_DIR:-target}/debug/hangpose}")
 test -x "$hangpose" || { echo "slurm_test: $hangpose was not found: run cargo build -p hangpose" >&2; exit 1; }
 PATH=$PATH:/usr/sbin:/sbin
 for tool in munged slurmctld slurmd sbatch; do

@@ -172,10 +172,11 @@ pub(crate) struct PlanArguments {
 /// The files of object and supporter.
 #[derive(Args)]
 struct FileArguments {
-    /// The object: a mesh (obj, stl, ply, glb, gltf).
+    /// The object: a mesh (obj, stl, ply, glb, gltf), or a urdf: all of its links, or one of them as in robot.urdf#link. The
+    /// path may begin with package://.
     #[arg(long, value_name = "FILE", required_unless_present_any = ["object_depth", "depth"])]
     object: Option<PathBuf>,
-    /// The supporter: a point cloud (ply, pcd, xyz), or a mesh, which is sampled.
+    /// The supporter: a point cloud (ply, pcd, xyz), or a mesh or urdf, which is sampled.
     #[arg(long, value_name = "FILE", required_unless_present_any = ["supporter_depth", "depth"])]
     supporter: Option<PathBuf>,
     #[command(flatten)]

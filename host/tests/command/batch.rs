@@ -1,23 +1,54 @@
 //! `batch` and `merge`: the rows are what `predict` says, and their bytes do not depend on how they came about.
 
 use super::*;
+use std::f64::consts::TAU;
 use std::fs::{self, File};
 use std::time::{Duration, Instant};
 
-/// A table of pairs of the scene: the ring in several sizes, the ball, and an option that leaves nothing.
+/// A table of pairs of a ring in several sizes and a block, with options that differ.
 const TABLE: &str = "id,object,supporter,object_scale,allow,here
-ring,ring.obj,peg.xyz,,,
-\"large, ring\",ring.obj,peg.xyz,1.1,,
-ball,ball.obj,peg.xyz,,,
-nothing allowed,ring.obj,peg.xyz,,balanced,
-at the middle,ring.obj,peg.xyz,,,\"0.05,0,0,0.03\"
-,ring.obj,peg.xyz,1.2,threaded,
+ring,ring.obj,hook.ply,,,
+\"large, ring\",ring.obj,hook.ply,1.1,,
+block,block.obj,hook.ply,,,
+out of reach,ring.obj,hook.ply,,,\"1,1,1,0.01\"
+at the middle,ring.obj,hook.ply,,,\"0.05,0,0.004,0.03\"
+,ring.obj,hook.ply,1.2,threaded,
 ";
 
 /// Options for all pairs.
 const OPTIONS: [&str; 4] = ["--top", "2", "--seed", "1"];
 
-impl Scene {
+/// A folder with a ring of few triangles, a block that cannot hang, and the hook of the samples.
+struct Pairs {
+    folder: TempDir,
+}
+
+impl Pairs {
+    fn new(table: impl AsRef<[u8]>) -> Self {
+        let pairs = Self { folder: tempfile::tempdir().unwrap() };
+        let ring = shapes::grid(24, 10, |u, v| {
+            let (u, v) = (TAU * u, TAU * v);
+            let r = 0.03 + 0.003 * v.cos();
+            [r * u.cos(), 0.003 * v.sin(), r * u.sin()]
+        });
+        pairs.write("ring.obj", shapes::obj(&ring));
+        pairs.write(
+            "block.obj",
+            "v 0 0 0\nv 0.04 0 0\nv 0 0.04 0\nv 0 0 0.04\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n",
+        );
+        fs::copy(sample("hook.ply"), pairs.path("hook.ply")).unwrap();
+        pairs.write("pairs.csv", table);
+        pairs
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        fs::write(self.path(name), content).unwrap();
+    }
+
     fn batch(&self, output: &str, options: &[&str]) -> Run {
         let mut command = command();
         command.current_dir(self.folder.path()).args(["batch", "pairs.csv", "-o", output]);
@@ -48,8 +79,7 @@ fn assert_done(run: &Run) {
 
 #[test]
 fn rows_are_what_predict_says() {
-    let scene = Scene::new();
-    scene.write("pairs.csv", TABLE);
+    let scene = Pairs::new(TABLE);
     let run = scene.batch("out.jsonl", &OPTIONS);
     assert_done(&run);
     assert_eq!(run.stderr, "", "no progress without a terminal");
@@ -59,15 +89,16 @@ fn rows_are_what_predict_says() {
     );
     let rows = scene.rows("out.jsonl");
     for (number, (id, object, options)) in (1..).zip([
-        ("ring", &scene.ring, vec![]),
-        ("large, ring", &scene.ring, vec!["--object-scale", "1.1"]),
-        ("ball", &scene.ball, vec![]),
-        ("nothing allowed", &scene.ring, vec!["--allow", "balanced"]),
-        ("at the middle", &scene.ring, vec!["--here", "0.05,0,0,0.03"]),
-        ("6", &scene.ring, vec!["--object-scale", "1.2", "--allow", "threaded"]),
+        ("ring", "ring.obj", vec![]),
+        ("large, ring", "ring.obj", vec!["--object-scale", "1.1"]),
+        ("block", "block.obj", vec![]),
+        ("out of reach", "ring.obj", vec!["--here", "1,1,1,0.01"]),
+        ("at the middle", "ring.obj", vec!["--here", "0.05,0,0.004,0.03"]),
+        ("6", "ring.obj", vec!["--object-scale", "1.2", "--allow", "threaded"]),
     ]) {
         let mut command = command();
-        command.args(["predict", "--json", "-", "--object"]).arg(object).arg("--supporter").arg(&scene.peg);
+        command.current_dir(scene.folder.path());
+        command.args(["predict", "--json", "-", "--object", object, "--supporter", "hook.ply"]);
         let single = finish(command.args(OPTIONS).args(options)).json();
         let of_pair: Vec<_> = rows.iter().filter(|row| row["pair"] == number).collect();
         assert!(of_pair.iter().all(|row| row["id"] == id && row["error"].is_null()), "{id}");
@@ -124,31 +155,21 @@ fn number_of(row: &Value, name: &str) -> f64 {
 
 #[test]
 fn jobs_shards_and_memory_do_not_change_a_byte() {
-    let scene = Scene::new();
-    scene.write("pairs.csv", TABLE);
-    for format in ["csv", "jsonl", "parquet"] {
-        let name = |stem: &str| format!("{stem}.{format}");
-        assert_done(&scene.batch(&name("one"), &[&OPTIONS[..], &["--jobs", "1"]].concat()));
-        let one = scene.bytes(&name("one"));
-        assert_done(&scene.batch(&name("two"), &[&OPTIONS[..], &["--jobs", "2", "--memory", "0"]].concat()));
-        assert!(one == scene.bytes(&name("two")), "{format}: two jobs");
-        if format != "csv" {
-            // Its shards are those of the CSV, since all formats hold the same.
-            assert_done(&scene.merge(&name("merged"), &["3.csv", "1.csv", "2.csv"]));
-            assert!(one == scene.bytes(&name("merged")), "{format}: merged from CSV");
-            continue;
-        }
-        for shard in ["1", "2", "3"] {
-            let options = ["--shard", &format!("{shard}/3")];
-            assert_done(&scene.batch(&name(shard), &[&OPTIONS[..], &options].concat()));
-        }
-        assert_done(&scene.merge("merged.csv", &["1.csv", "2.csv", "3.csv"]));
-        assert!(one == scene.bytes("merged.csv"), "merged");
+    let scene = Pairs::new(TABLE);
+    assert_done(&scene.batch("one.csv", &[&OPTIONS[..], &["--jobs", "1"]].concat()));
+    let one = scene.bytes("one.csv");
+    assert_done(&scene.batch("two.csv", &[&OPTIONS[..], &["--jobs", "2", "--memory", "0"]].concat()));
+    assert!(one == scene.bytes("two.csv"), "two jobs");
+    for (shard, output) in [("1/3", "1.csv"), ("2/3", "2.jsonl"), ("3/3", "3.parquet")] {
+        assert_done(&scene.batch(output, &[&OPTIONS[..], &["--shard", shard]].concat()));
     }
-    // Back from the other formats.
-    for format in ["one.jsonl", "one.parquet"] {
+    assert_done(&scene.merge("merged.csv", &["3.parquet", "1.csv", "2.jsonl"]));
+    assert!(one == scene.bytes("merged.csv"), "merged");
+    // Through the other formats and back.
+    for format in ["merged.jsonl", "merged.parquet"] {
+        assert_done(&scene.merge(format, &["one.csv"]));
         assert_done(&scene.merge("back.csv", &[format]));
-        assert!(scene.bytes("one.csv") == scene.bytes("back.csv"), "{format}");
+        assert!(one == scene.bytes("back.csv"), "{format}");
     }
 
     let message = |shards: &[&str]| {
@@ -157,31 +178,36 @@ fn jobs_shards_and_memory_do_not_change_a_byte() {
         assert!(!scene.path("bad.csv").exists());
         run.stderr
     };
-    let text = message(&["1.csv", "3.csv"]);
+    let text = message(&["1.csv", "3.parquet"]);
     assert!(text.contains("2 of 6 pairs have no row: 3, 4"), "{text}");
-    let text = message(&["1.csv", "2.csv", "3.csv", "one.jsonl"]);
-    assert!(text.contains("pair 1 is in 1.csv and in one.jsonl: give each shard once"), "{text}");
-    scene.write("pairs.csv", TABLE.replace("ball.obj", "other.obj"));
+    let text = message(&["1.csv", "2.jsonl", "3.parquet", "one.csv"]);
+    assert!(text.contains("pair 1 is in 1.csv and in one.csv: give each shard once"), "{text}");
+    scene.write("pairs.csv", TABLE.replace("block.obj", "other.obj"));
     let text = message(&["one.csv"]);
-    assert!(text.contains("pair 3 is ball.obj on peg.xyz in the rows, but other.obj on peg.xyz"), "{text}");
+    assert!(
+        text.contains("pair 3 is block.obj on hook.ply in the rows, but other.obj on hook.ply"),
+        "{text}"
+    );
 }
 
 /// A table of as many pairs, each with an object of its own.
 fn many(pairs: u32) -> String {
-    let line = |i| format!("ring.obj,peg.xyz,{}\n", 1.0 + f64::from(i) / 100.0);
+    let line = |i| format!("ring.obj,hook.ply,{}\n", 1.0 + f64::from(i) / 100.0);
     (0..pairs).map(line).fold("object,supporter,object_scale\n".into(), |all, line| all + &line)
 }
 
 #[test]
 fn a_killed_run_goes_on_where_it_was() {
-    let scene = Scene::new();
-    scene.write("pairs.csv", many(12));
-    let options = ["--top", "1", "--jobs", "1"];
+    let scene = Pairs::new(many(24));
+    let constants = "samples = 900\n";
+    scene.write("params.toml", constants);
+    let options = ["--params", "params.toml", "--top", "1"];
     assert_done(&scene.batch("whole.parquet", &options));
     let journal = scene.path("out.parquet.partial");
     let lines = || fs::read(&journal).unwrap_or_default().iter().filter(|byte| **byte == b'\n').count();
     let mut command = command();
-    command.current_dir(scene.folder.path()).args(["batch", "pairs.csv", "-o", "out.parquet"]).args(options);
+    command.current_dir(scene.folder.path()).args(["batch", "pairs.csv", "-o", "out.parquet", "--jobs", "1"]);
+    command.args(options);
     let mut child = command.spawn().unwrap();
     let start = Instant::now();
     while lines() < 4 {
@@ -192,7 +218,7 @@ fn a_killed_run_goes_on_where_it_was() {
     child.kill().unwrap();
     child.wait().unwrap();
     let done = lines() - 1;
-    assert!((3..12).contains(&done) && !scene.path("out.parquet").exists());
+    assert!((3..24).contains(&done) && !scene.path("out.parquet").exists());
 
     // What a write that was cut off leaves.
     let mut torn = fs::read(&journal).unwrap();
@@ -205,75 +231,46 @@ fn a_killed_run_goes_on_where_it_was() {
         assert!(run.stderr.contains(reason), "{reason} in {}", run.stderr);
         assert!(fs::read(&journal).unwrap() == torn, "nothing is lost");
     };
+    let again = |more: &[&'static str]| [&options[..], &["--resume"], more].concat();
     refused(&options, "an earlier run has ended before it was done; pass --resume");
-    refused(&["--resume", "--top", "2"], "it had --top=1, now there are --top=2");
-    refused(
-        &["--resume", "--top", "1", "--shard", "1/2"],
-        "its shard was pairs 1 to 12, now it is pairs 1 to 6",
-    );
-    scene.write("pairs.csv", many(13));
-    refused(&["--resume", "--top", "1"], "the table of pairs has changed");
-    scene.write("pairs.csv", many(12));
+    let other = ["--resume", "--params", "params.toml", "--top", "2"];
+    refused(&other, "it had --top=1 --params=params.toml, now there are --top=2 --params=params.toml");
+    refused(&again(&["--shard", "1/2"]), "its shard was pairs 1 to 24, now it is pairs 1 to 12");
+    scene.write("params.toml", "samples = 901\n");
+    refused(&again(&[]), "a file of constants has changed");
+    scene.write("params.toml", constants);
+    scene.write("pairs.csv", many(25));
+    refused(&again(&[]), "the table of pairs has changed");
+    scene.write("pairs.csv", many(24));
     let held = File::options().write(true).open(&journal).unwrap();
     held.lock().unwrap();
-    refused(&["--resume", "--top", "1"], "another run is writing it");
+    refused(&again(&[]), "another run is writing it");
     drop(held);
 
     // The number of jobs changes no result, so that it may be another one.
-    let run = scene.batch("out.parquet", &["--resume", "--top", "1", "--jobs", "2"]);
+    let run = scene.batch("out.parquet", &again(&["--jobs", "2"]));
     assert_done(&run);
-    assert!(run.stdout.contains(&format!("12 pairs ({done} of them in an earlier run)")), "{}", run.stdout);
+    assert!(run.stdout.contains(&format!("24 pairs ({done} of them in an earlier run)")), "{}", run.stdout);
     assert!(scene.bytes("whole.parquet") == scene.bytes("out.parquet"));
     assert!(!journal.exists());
 
     // A run that is done is not repeated, and one of other pairs is not replaced.
-    let run = scene.batch("out.parquet", &["--resume", "--top", "1"]);
+    let run = scene.batch("out.parquet", &again(&[]));
     assert_eq!((run.status, run.stdout.as_str()), (Some(0), "out.parquet: is complete already\n"));
-    scene.write("pairs.csv", many(13));
-    let run = scene.batch("out.parquet", &["--resume", "--top", "1"]);
-    assert!(run.status == Some(1) && run.stderr.contains("1 of 13 pairs have no row: 13"), "{}", run.stderr);
+    scene.write("pairs.csv", many(25));
+    let run = scene.batch("out.parquet", &again(&[]));
+    assert!(run.status == Some(1) && run.stderr.contains("1 of 25 pairs have no row: 25"), "{}", run.stderr);
     assert!(scene.bytes("whole.parquet") == scene.bytes("out.parquet"));
 }
 
 #[test]
-fn a_changed_file_of_constants_is_another_run() {
-    let scene = Scene::new();
-    scene.write("pairs.csv", "object,supporter\nball.obj,peg.xyz\n");
-    scene.write("params.toml", "samples = 900\n");
-    let options = ["--params", "params.toml"];
-    assert_done(&scene.batch("out.csv", &options));
-    // The journal of a run that was ended before its first row.
-    let mut command = command();
-    command.current_dir(scene.folder.path()).args(["batch", "pairs.csv", "-o", "new.csv"]).args(options);
-    let mut child = command.spawn().unwrap();
-    while !scene.path("new.csv.partial").exists() && child.try_wait().unwrap().is_none() {
-        std::thread::yield_now();
-    }
-    let _ = child.kill();
-    child.wait().unwrap();
-    if !fs::read(scene.path("new.csv.partial")).unwrap_or_default().contains(&b'\n') {
-        // It was done, or killed before it wrote which run it is.
-        return;
-    }
-    scene.write("params.toml", "samples = 901\n");
-    let run = scene.batch("new.csv", &["--params", "params.toml", "--resume"]);
-    assert!(
-        run.status == Some(1) && run.stderr.contains("a file of constants has changed"),
-        "{}",
-        run.stderr
-    );
-}
-
-#[test]
 fn bad_files_are_errors_of_their_rows() {
-    let scene = Scene::new();
+    let scene = Pairs::new("");
     scene.write("broken.obj", "v 0 0 zero\n");
-    let (mut vertices, triangles) = shapes::weighted_ring();
-    vertices.iter_mut().flatten().for_each(|x| *x *= 1000.0);
-    scene.write("mm.obj", shapes::obj(&(vertices, triangles)));
+    scene.write("mm.obj", "v 0 0 0\nv 40 0 0\nv 0 40 0\nv 0 0 40\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
     scene.write(
         "pairs.csv",
-        "object,supporter,scene,top\nmissing.obj,peg.xyz,,1\nbroken.obj,peg.xyz,,1\npeg.xyz,peg.xyz,,1\nring.obj,missing.ply,,1\nring.obj,peg.xyz,missing.ply,1\nmm.obj,peg.xyz,,1\nring.obj,peg.xyz,,1\n",
+        "object,supporter,scene,top\nmissing.obj,hook.ply,,1\nbroken.obj,hook.ply,,1\nhook.ply,hook.ply,,1\nring.obj,missing.ply,,1\nring.obj,hook.ply,missing.ply,1\nmm.obj,hook.ply,,1\nring.obj,hook.ply,,1\n",
     );
     let run = scene.batch("out.jsonl", &["--jobs", "2"]);
     assert_done(&run);
@@ -286,24 +283,19 @@ fn bad_files_are_errors_of_their_rows() {
     let rows = scene.rows("out.jsonl");
     assert_eq!(rows.len(), 7);
     for (row, reason) in
-        rows.iter().zip(["missing.obj", "broken.obj: line 1", "peg.xyz", "missing.ply", "missing.ply"])
+        rows.iter().zip(["missing.obj", "broken.obj: line 1", "hook.ply", "missing.ply", "missing.ply"])
     {
         let error = row["error"].as_str().unwrap();
         assert!(error.contains(reason) && row["rank"].is_null() && row["rejection"].is_null(), "{error}");
     }
-    assert!(
-        rows[5]["warning"]
-            .as_str()
-            .unwrap()
-            .contains("if its unit is millimetres, pass --object-scale 0.001")
-    );
+    assert!(rows[5]["warning"].as_str().unwrap().contains("pass --object-scale 0.001"));
     assert!(run.stderr.contains("warning: mm.obj: the object is "), "{}", run.stderr);
     assert_eq!((&rows[6]["rank"], &rows[6]["error"]), (&1.into(), &Value::Null));
 }
 
 #[test]
 fn mistakes_in_the_table_name_their_line() {
-    let scene = Scene::new();
+    let scene = Pairs::new("");
     for (table, reason) in [
         ("", "line 1: the column object is missing"),
         ("object\nring.obj\n", "line 1: the column supporter is missing"),
@@ -313,23 +305,23 @@ fn mistakes_in_the_table_name_their_line() {
             "line 1: the column \"colour\" is unknown; the columns are id, object, supporter, top, com",
         ),
         ("object,supporter,object\n", "line 1: the column \"object\" appears twice"),
-        ("object,supporter\nring.obj,peg.xyz\n,peg.xyz\n", "line 3: the object is empty"),
-        ("object,supporter\nring.obj,peg.xyz\nring.obj\n", "line 3: it has 1 fields, but the header has 2"),
-        ("object,supporter\n\nring.obj,peg.xyz\nring.obj,peg.xyz,1\n", "line 4: it has 3 fields"),
+        ("object,supporter\nring.obj,hook.ply\n,hook.ply\n", "line 3: the object is empty"),
+        ("object,supporter\nring.obj,hook.ply\nring.obj\n", "line 3: it has 1 fields, but the header has 2"),
+        ("object,supporter\n\nring.obj,hook.ply\nring.obj,hook.ply,1\n", "line 4: it has 3 fields"),
         (
-            "object,supporter,object_up\nring.obj,peg.xyz,\nring.obj,peg.xyz,w\n",
+            "object,supporter,object_up\nring.obj,hook.ply,\nring.obj,hook.ply,w\n",
             "line 3: invalid value 'w' for '--object-up <AXIS>': use x, y, z",
         ),
         (
-            "object,supporter,com\nring.obj,peg.xyz,\"1,2\"\n",
+            "object,supporter,com\nring.obj,hook.ply,\"1,2\"\n",
             "line 2: invalid value '1,2' for '--com <X,Y,Z>'",
         ),
-        ("object,supporter,profile,allow\nring.obj,peg.xyz,paper,hooked\n", "line 2: --allow has no effect"),
+        ("object,supporter,profile,allow\nring.obj,hook.ply,paper,hooked\n", "line 2: --allow has no effect"),
         (
-            "object,supporter,by,by_box\nring.obj,peg.xyz,\"0,0,0\",\"0,0,0,1,1,1\"\n",
+            "object,supporter,by,by_box\nring.obj,hook.ply,\"0,0,0\",\"0,0,0,1,1,1\"\n",
             "line 2: the argument '--by <X,Y,Z[,R]>' cannot be used with",
         ),
-        ("object,supporter,params\nring.obj,peg.xyz,none.toml\n", "line 2: none.toml: cannot be read"),
+        ("object,supporter,params\nring.obj,hook.ply,none.toml\n", "line 2: none.toml: cannot be read"),
     ] {
         scene.write("pairs.csv", table);
         let run = scene.batch("out.csv", &[]);
@@ -338,18 +330,17 @@ fn mistakes_in_the_table_name_their_line() {
         assert!(run.stderr.contains(&format!("error: {place}{reason}")), "{reason} in {}", run.stderr);
         assert!(!scene.path("out.csv").exists() && !scene.path("out.csv.partial").exists());
     }
-    scene.write("pairs.csv", b"object,supporter\nring.obj,peg.xyz\n\xff.obj,peg.xyz\n");
+    scene.write("pairs.csv", b"object,supporter\nring.obj,hook.ply\n\xff.obj,hook.ply\n");
     assert!(scene.batch("out.csv", &[]).stderr.contains("pairs.csv, line 3: it is not UTF-8"));
 
     // What spreadsheets write: a byte order mark and other ends of lines.
-    scene.write("pairs.csv", "\u{feff}object,supporter\r\nball.obj,peg.xyz\r\n");
+    scene.write("pairs.csv", "\u{feff}object,supporter\r\nblock.obj,hook.ply\r\n");
     assert_done(&scene.batch("out.csv", &[]));
 }
 
 #[test]
 fn wrong_options_have_the_status_of_usage_and_wrong_files_that_of_input() {
-    let scene = Scene::new();
-    scene.write("pairs.csv", TABLE);
+    let scene = Pairs::new(TABLE);
     for options in
         [&["--shard", "3/2"][..], &["--jobs", "0"], &["--object-up", "w"], &["--object", "ring.obj"]]
     {
@@ -377,12 +368,15 @@ fn the_formats_hold_the_same_and_parquet_has_types() {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
 
-    let scene = Scene::new();
-    scene.write("pairs.csv", TABLE.replace("ball.obj", "none.obj"));
-    for output in ["out.csv", "out.jsonl", "out.parquet"] {
+    let scene = Pairs::new(TABLE.replace("block.obj", "none.obj"));
+    for output in ["out.jsonl", "out.parquet"] {
         assert_done(&scene.batch(output, &OPTIONS));
     }
+    assert_done(&scene.merge("out.csv", &["out.jsonl"]));
     let rows = scene.rows("out.jsonl");
+    // What a run writes is what a merge does.
+    assert_done(&scene.merge("merged.parquet", &["out.jsonl"]));
+    assert!(scene.bytes("out.parquet") == scene.bytes("merged.parquet"));
     let mut csv = csv::Reader::from_path(scene.path("out.csv")).unwrap();
     let names: Vec<String> = csv.headers().unwrap().iter().map(Into::into).collect();
     let records: Vec<_> = csv.records().map(Result::unwrap).collect();

@@ -12,6 +12,7 @@ mod placement;
 mod planning;
 mod shapes;
 mod shell;
+mod urdf;
 mod usage;
 
 #[path = "../images/mod.rs"]

@@ -154,8 +154,8 @@ impl Run {
         ensure!(self.version == now.version, "it was of version {}, this is {}", self.version, now.version);
         ensure!(self.pairs == now.pairs, "the table of pairs has changed");
         ensure!(self.options == now.options, "it had {}, now there are {}", words(self), words(now));
-        ensure!(self.params == now.params, "a file of constants has changed");
         ensure!(self.shard == now.shard, "its shard was {}, now it is {}", shard(self), shard(now));
+        ensure!(self.params == now.params, "a file of constants has changed");
         Ok(())
     }
 }

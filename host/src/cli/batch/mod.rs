@@ -65,7 +65,8 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
     let range = arguments.shard.range(all.len());
     let pairs = &all[range.clone()];
     let destination = Output::prepare(output, &inputs(table, pairs))?;
-    let journal_path = Journal::path(output);
+    // Beside the file that a symbolic link leads to, so that all runs that write it meet there.
+    let journal_path = Journal::path(&std::fs::canonicalize(output).unwrap_or_else(|_| output.clone()));
     let run = Run {
         version: env!("CARGO_PKG_VERSION").into(),
         pairs: hash(&content),
