@@ -41,7 +41,7 @@ command -v valgrind >/dev/null || missing+=(valgrind libc6-dbg)
 command -v dpkg-shlibdeps >/dev/null || missing+=(dpkg-dev)
 command -v file >/dev/null || missing+=(file)
 pkg-config --exists eigen3 2>/dev/null || missing+=(libeigen3-dev)
-# The terminal of the tests of the command, and the queue of scripts/slurm_test.sh. Its daemons are outside of the PATH of users.
+# The terminal of the tests of the command, and the queue of scripts/slurm_test.sh, whose daemons users have not in their PATH.
 command -v script >/dev/null || missing+=(bsdutils)
 has_daemon() { command -v "$1" >/dev/null || [ -x "/usr/sbin/$1" ]; }
 { has_daemon slurmctld && has_daemon slurmd && command -v sbatch >/dev/null; } || missing+=(slurm-wlm)

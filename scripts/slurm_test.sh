@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Tests scripts/slurm/batch.sbatch on a Slurm of one node that this script starts and stops: 200 pairs in four tasks, of which
-# one is killed and requeued, give the bytes of a single run. Usage: slurm_test.sh [the command hangpose]
+# Tests scripts/slurm/batch.sbatch on a Slurm of one node that this script starts and stops: 200 pairs in four tasks,
+# of which one is killed and requeued, give the bytes of a single run. Usage: slurm_test.sh [the command hangpose]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

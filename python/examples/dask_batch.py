@@ -4,9 +4,10 @@
     python dask_batch.py samples/pairs.csv poses.csv --workers 2
     python dask_batch.py samples/pairs.csv poses.csv --scheduler tcp://cluster:8786
 
-The table has the columns object and supporter, paths relative to it, and may have id. The result has a row for each pose,
-best first, or one row without a pose, in the order of the table, whatever the number of workers. Workers of a cluster read
-the files from paths that all computers share. For options of the prediction, resuming and Parquet see `hangpose batch`.
+The table has the columns object and supporter, paths relative to it, and may have id. The result has a row for each
+pose, best first, or one row without a pose, in the order of the table, whatever the number of workers. Workers of a
+cluster read the files from paths that all computers share. For options of the prediction, resuming and Parquet see
+`hangpose batch`.
 """
 
 import argparse
@@ -16,7 +17,8 @@ from pathlib import Path
 
 import hangpose
 
-# Pairs of one task: many enough that a worker uses what it has analysed again, few enough that the workers end together.
+# Pairs of one task: many enough that a worker uses what it has analysed again, few enough that all workers end
+# together.
 CHUNK = 10
 # Poses that are written of each pair.
 TOP = 3
@@ -97,7 +99,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("pairs", help="CSV file with the columns object and supporter")
     parser.add_argument("output", help="CSV file for the poses")
-    parser.add_argument("--workers", type=int, default=2, help="local workers; 0 for none but this process [default: 2]")
+    parser.add_argument("--workers", type=int, default=2, help="local workers, 0 for only this process [default: 2]")
     parser.add_argument("--scheduler", help="address of the scheduler of a cluster, in place of local workers")
     arguments = parser.parse_args()
     pairs = read_pairs(arguments.pairs)

@@ -302,7 +302,8 @@ pub(crate) struct BatchArguments {
     /// Predict the i-th of n parts of the pairs only: consecutive ones, so that each part reads few files.
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = Shard::parse)]
     shard: Shard,
-    /// Go on with a run that was ended, if there is one. The pairs, the options and the version must be the same.
+    /// Go on with a run that was ended, if there is one. The pairs, the options and the version must be the same. A result
+    /// that is there already is kept.
     #[arg(long)]
     resume: bool,
     /// Memory for objects and supporters that later pairs need again, MiB. If they take more, those that are needed last are

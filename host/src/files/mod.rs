@@ -11,8 +11,8 @@
 //! | cloud | `pcd`      | text, binary and compressed; missing (NaN) points are dropped |
 //! | cloud | `xyz`, `txt`, `pts` | `x y z` or `x y z nx ny nz` per line |
 //!
-//! A URDF gives the visual meshes of its links, or the collision meshes of a link that has no others, and boxes, cylinders,
-//! spheres and capsules. A path may begin with `package://`: the package is looked for in `AMENT_PREFIX_PATH` and
+//! A URDF gives the visual meshes of its links, or the collision meshes of a link that has no others, and boxes,
+//! cylinders, spheres and capsules. A path may begin with `package://`: the package is looked for in `AMENT_PREFIX_PATH` and
 //! `ROS_PACKAGE_PATH`, and above the URDF that names it.
 //!
 //! Depth images and what belongs to them are in [`depth`].

@@ -24,7 +24,7 @@ fn solid(mesh: &MeshFile) -> (f64, [f64; 3]) {
     (volume, moment.map(|m| m / volume))
 }
 
-/// Asserts a volume, of which solids of 48 sides lack up to 1 %, and a centroid, which moves if they lack different parts.
+/// Asserts a volume, of which solids of 48 sides lack up to 1 %, and a centroid, which moves by what they lack.
 #[track_caller]
 fn assert_solid(mesh: &MeshFile, volume: f64, centroid: [f64; 3]) {
     let (found, at) = solid(mesh);

@@ -16,7 +16,7 @@ use super::{BatchArguments, progress, terminal};
 use anyhow::{Context, Result, anyhow};
 use hangpose::hanging::HangingPose;
 use hangpose::{Monitor, predict_poses};
-use journal::{Journal, Run};
+use journal::{Done, Journal, Run};
 use models::{ObjectModel, Store, SupporterModel};
 use pairs::Pair;
 use row::Row;
@@ -122,12 +122,7 @@ fn jobs(arguments: &BatchArguments) -> usize {
 }
 
 /// Predicts pairs in their order on `jobs` threads, adds each to the journal as it is done, and returns their rows.
-fn predict_all(
-    pairs: &[&Pair],
-    jobs: usize,
-    memory: usize,
-    journal: &Mutex<Journal>,
-) -> Result<Vec<(u64, Vec<Row>)>> {
+fn predict_all(pairs: &[&Pair], jobs: usize, memory: usize, journal: &Mutex<Journal>) -> Result<Vec<Done>> {
     // Half for either side.
     let objects = Store::<ObjectModel>::new(pairs.iter().copied(), memory / 2);
     let supporters = Store::<SupporterModel>::new(pairs.iter().copied(), memory / 2);

@@ -35,8 +35,8 @@ pub(super) struct Wish {
 /// Columns that are no options.
 const OWN: [&str; 3] = ["id", "object", "supporter"];
 
-/// Reads the pairs of a table whose content is `bytes`. All of them are checked before any is predicted, so that a mistake
-/// is reported at once.
+/// Reads the pairs of a table whose content is `bytes`. All of them are checked before any is predicted, so that a
+/// mistake is reported at once.
 pub(super) fn read(path: &Path, bytes: &[u8], given: &Given) -> Result<Vec<Pair>> {
     // Without columns, so that a mistake on the command line is not reported as one of a line.
     Wish::new(given.with_cells(&[], Path::new(""))?)?;
