@@ -4,10 +4,10 @@
     python dask_batch.py samples/pairs.csv poses.csv --workers 2
     python dask_batch.py samples/pairs.csv poses.csv --scheduler tcp://cluster:8786
 
-The table has the columns object and supporter, paths relative to it, and may have id. The result has a row for each
-pose, best first, or one row without a pose, in the order of the table, whatever the number of workers. Workers of a
-cluster read the files from paths that all computers share. For options of the prediction, resuming and Parquet see
-`hangpose batch`.
+The table has the columns object and supporter, paths relative to it, and may have id, object_scale and supporter_scale.
+The result has a row for each pose, best first, or one row without a pose, in the order of the table, whatever the number
+of workers. Workers of a cluster read the files from paths that all computers share. For more options, resuming and
+Parquet see `hangpose batch`.
 """
 
 import argparse
@@ -22,38 +22,39 @@ import hangpose
 CHUNK = 10
 # Poses that are written of each pair.
 TOP = 3
+KNOWN = ["id", "object", "supporter", "object_scale", "supporter_scale"]
 MATRIX = [f"m{row}{column}" for row in range(3) for column in range(4)]
 COLUMNS = ["id", "object", "supporter", "rank", *MATRIX, "kind", "probability", "rejection", "error"]
 
 
 # Each worker keeps what it has read and analysed. The sizes bound its memory.
 @functools.lru_cache(maxsize=64)
-def read_object(path):
-    return hangpose.Object(path)
+def read_object(path, scale):
+    return hangpose.Object(path, scale=scale)
 
 
 @functools.lru_cache(maxsize=64)
-def read_supporter(path):
-    return hangpose.Supporter(path)
+def read_supporter(path, scale):
+    return hangpose.Supporter(path, scale=scale)
 
 
 def predict_pair(folder, pair):
     """The rows of a pair."""
     row = {name: pair[name] for name in ("id", "object", "supporter")}
     try:
-        found = hangpose.predict(
-            read_object(str(folder / pair["object"])), read_supporter(str(folder / pair["supporter"]))
-        )
-    # A bad file is an error of its row and does not stop the rest.
-    except (OSError, ValueError, RuntimeError) as error:
+        thing = read_object(str(folder / pair["object"]), float(pair.get("object_scale") or 1))
+        supporter = read_supporter(str(folder / pair["supporter"]), float(pair.get("supporter_scale") or 1))
+        found = hangpose.predict(thing, supporter, top=TOP)
+    # A bad file or scale is an error of its row and does not stop the rest.
+    except (hangpose.HangposeError, ValueError) as error:
         return [{**row, "error": str(error)}]
+    if not found.poses:
+        return [{**row, "rejection": found.rejection.stage}]
     rows = []
-    for rank, pose in enumerate(list(found.poses)[:TOP], start=1):
-        matrix = [float(pose.release[i][j]) for i in range(3) for j in range(4)]
-        # repr has the digits that give the same number back.
-        numbers = dict(zip(MATRIX, map(repr, matrix)))
-        rows.append({**row, "rank": rank, **numbers, "kind": pose.kind, "probability": repr(float(pose.probability))})
-    return rows or [{**row, "rejection": str(found.rejection)}]
+    for pose in found.poses:
+        matrix = dict(zip(MATRIX, pose.release[:3].ravel().tolist()))
+        rows.append({**row, "rank": pose.rank, **matrix, "kind": pose.kind, "probability": pose.probability})
+    return rows
 
 
 def predict_chunk(folder, pairs):
@@ -64,9 +65,12 @@ def predict_chunk(folder, pairs):
 def read_pairs(path):
     with open(path, newline="", encoding="utf-8-sig") as file:
         reader = csv.DictReader(file)
-        missing = {"object", "supporter"} - set(reader.fieldnames or ())
+        columns = set(reader.fieldnames or ())
+        missing, unknown = {"object", "supporter"} - columns, columns - set(KNOWN)
         if missing:
             raise SystemExit(f"{path}: the column {', '.join(sorted(missing))} is missing")
+        if unknown:
+            raise SystemExit(f"{path}: the column {', '.join(sorted(unknown))} is unknown; known are {', '.join(KNOWN)}")
         return [{**pair, "id": pair.get("id") or str(number)} for number, pair in enumerate(reader, start=1)]
 
 
