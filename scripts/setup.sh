@@ -50,6 +50,11 @@ command -v node >/dev/null || missing+=(nodejs)
 command -v npm >/dev/null || missing+=(npm)
 command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null ||
     missing+=(chromium)
+# The terminal of the tests of the command, and the queue of scripts/slurm_test.sh, whose daemons users have not in their PATH.
+command -v script >/dev/null || missing+=(bsdutils)
+has_daemon() { command -v "$1" >/dev/null || [ -x "/usr/sbin/$1" ]; }
+{ has_daemon slurmctld && has_daemon slurmd && command -v sbatch >/dev/null; } || missing+=(slurm-wlm)
+has_daemon munged || missing+=(munge)
 
 if command -v rustup >/dev/null; then
     have=$(rustup component list --installed)

@@ -199,22 +199,25 @@ impl Placement {
     /// A warning that names the likely unit if the size is implausible.
     fn warn_of_size(&self, aabb: &Aabb, what: &str) -> Option<String> {
         let size = aabb.extents().max();
-        // Between 40 and 100 it may be a basket in centimetres or a hook in millimetres.
-        let (unit, factor) = match size {
+        let units: &[(&str, f32)] = match size {
             TOO_SMALL..=TOO_LARGE => return None,
-            0.0..TOO_SMALL => ("kilometres", 1000.0),
-            TOO_LARGE..40.0 => ("centimetres", 0.01),
-            40.0..=100.0 => ("millimetres or centimetres", 0.001),
-            _ => ("millimetres", 0.001),
+            0.0..TOO_SMALL => &[("kilometres", 1000.0)],
+            TOO_LARGE..40.0 => &[("centimetres", 0.01), ("inches", 0.0254)],
+            // It may be a hook in millimetres or a basket in centimetres.
+            40.0..=100.0 => &[("millimetres", 0.001), ("centimetres", 0.01)],
+            _ => &[("millimetres", 0.001)],
         };
-        let scale = rounded(self.scale * factor);
-        let advice = match (self.scale_option, self.scale, unit) {
-            (None, ..) => "limit what the images show by a crop box or a mask".into(),
-            (Some(option), 1.0, "millimetres or centimetres") => {
-                format!("if its unit is {unit}, pass {option} 0.001 or 0.01")
+        let advice = match (self.scale_option, self.scale) {
+            (None, _) => "limit what the images show by a crop box or a mask".into(),
+            (Some(option), 1.0) => {
+                let names: Vec<_> = units.iter().map(|(name, _)| *name).collect();
+                let factors: Vec<_> = units.iter().map(|(_, factor)| factor.to_string()).collect();
+                format!("if its unit is {}, pass {option} {}", names.join(" or "), factors.join(" or "))
             }
-            (Some(option), 1.0, _) => format!("if its unit is {unit}, pass {option} {scale}"),
-            (Some(option), wrong, _) => format!("it was scaled with {option} {wrong}: try {option} {scale}"),
+            (Some(option), wrong) => {
+                let scale = rounded(wrong * units[0].1);
+                format!("it was scaled with {option} {wrong}: try {option} {scale}")
+            }
         };
         Some(format!(
             "the {what} is {} m large, but {TOO_SMALL} to {TOO_LARGE} m is plausible; {advice}",
@@ -243,7 +246,7 @@ mod tests {
         let end = |size| warning(1.0, size).unwrap().split_once("; ").unwrap().1.to_string();
         assert_eq!(warning(1.0, 0.1), None);
         assert_eq!(end(120.0), "if its unit is millimetres, pass --scale 0.001");
-        assert_eq!(end(12.0), "if its unit is centimetres, pass --scale 0.01");
+        assert_eq!(end(12.0), "if its unit is centimetres or inches, pass --scale 0.01 or 0.0254");
         assert_eq!(end(0.0001), "if its unit is kilometres, pass --scale 1000");
         assert_eq!(end(77.0), "if its unit is millimetres or centimetres, pass --scale 0.001 or 0.01");
         assert!(warning(1.0, 123.456).unwrap().starts_with("the mug is 123 m large"));

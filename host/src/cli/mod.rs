@@ -201,10 +201,11 @@ pub(crate) struct ViewArguments {
 /// The files of object and supporter.
 #[derive(Args)]
 struct FileArguments {
-    /// The object: a mesh (obj, stl, ply, glb, gltf).
+    /// The object: a mesh (obj, stl, ply, glb, gltf), or a urdf: all of its links, or one of them as in robot.urdf#link. The
+    /// path may begin with package://.
     #[arg(long, value_name = "FILE", required_unless_present_any = ["object_depth", "depth"])]
     object: Option<PathBuf>,
-    /// The supporter: a point cloud (ply, pcd, xyz), or a mesh, which is sampled.
+    /// The supporter: a point cloud (ply, pcd, xyz), or a mesh or urdf, which is sampled.
     #[arg(long, value_name = "FILE", required_unless_present_any = ["supporter_depth", "depth"])]
     supporter: Option<PathBuf>,
     #[command(flatten)]
@@ -332,7 +333,8 @@ pub(crate) struct BatchArguments {
     /// Predict the i-th of n parts of the pairs only: consecutive ones, so that each part reads few files.
     #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = Shard::parse)]
     shard: Shard,
-    /// Go on with a run that was ended, if there is one. The pairs, the options and the version must be the same.
+    /// Go on with a run that was ended, if there is one. The pairs, the options and the version must be the same. A result
+    /// that is there already is kept.
     #[arg(long)]
     resume: bool,
     /// Memory for objects and supporters that later pairs need again, MiB. If they take more, those that are needed last are

@@ -1,5 +1,6 @@
 //! Text output: results on standard output, notes, warnings and errors on standard error.
 
+use anstyle::AnsiColor;
 use anyhow::{Context, Result};
 use indicatif::ProgressBar;
 use std::fmt::Display;
@@ -35,7 +36,14 @@ pub(super) fn show_below(bar: &ProgressBar) -> impl Drop + use<> {
 ///
 /// A failure to write is ignored, since there is no other channel to report it on.
 pub(crate) fn say(kind: &str, text: impl Display) {
-    let print = || writeln!(std::io::stderr(), "{kind}: {text}");
+    let colour = match kind {
+        "error" => AnsiColor::Red,
+        "warning" => AnsiColor::Yellow,
+        _ => AnsiColor::Cyan,
+    };
+    let style = colour.on_default().bold();
+    // Without colours where standard error is no terminal or NO_COLOR is set.
+    let print = || writeln!(anstream::stderr(), "{style}{kind}{style:#}: {text}");
     let _ = match &*BAR.lock().unwrap_or_else(PoisonError::into_inner) {
         Some(bar) => bar.suspend(print),
         None => print(),

@@ -60,8 +60,9 @@ pub enum FileError {
     },
     /// The extension is not that of a supported format.
     #[error(
-        "{path}: {}; supported are {known}: rename the file if it has one of these formats, otherwise export it as one",
-        said(extension)
+        "{path}: {}; supported are {known}: rename the file if it has one of these formats, otherwise {}",
+        said(extension),
+        exported(extension)
     )]
     UnknownFormat {
         /// The file.
@@ -70,6 +71,16 @@ pub enum FileError {
         extension: String,
         /// The supported extensions.
         known: &'static str,
+    },
+    /// No folder of the package exists.
+    #[error(
+        "{path}: the package {package:?} was not found in AMENT_PREFIX_PATH, ROS_PACKAGE_PATH or above the file that names it; source the setup file of its workspace, or give a path without package://"
+    )]
+    NoPackage {
+        /// The file.
+        path: PathBuf,
+        /// The package.
+        package: String,
     },
     /// The file is shorter than its header declares.
     #[error("{path}: {place}: {reason}; the file is cut off or its header is wrong: copy or export it again")]
@@ -175,6 +186,14 @@ fn said(extension: &str) -> String {
     match extension {
         "" => "the file name has no extension".into(),
         other => format!("\".{other}\" is not a supported format"),
+    }
+}
+
+fn exported(extension: &str) -> &'static str {
+    match extension {
+        // The format of most meshes of robots.
+        "dae" => "convert it, for example by `assimp export mesh.dae mesh.obj`, and name that file",
+        _ => "export it as one",
     }
 }
 

@@ -2,8 +2,9 @@
 
 use std::fs;
 use std::io::ErrorKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use super::locate::{locate, split_link};
 use super::{FileError, Place};
 
 /// File formats, determined by the extension.
@@ -15,11 +16,12 @@ pub(super) enum Format {
     Gltf,
     Pcd,
     Xyz,
+    Urdf,
 }
 
-pub(super) const MESHES: &str = "obj, stl, ply, glb and gltf";
+pub(super) const MESHES: &str = "obj, stl, ply, glb, gltf and urdf";
 pub(super) const CLOUDS: &str = "ply, pcd, xyz, txt and pts";
-pub(super) const ANY: &str = "obj, stl, ply, glb, gltf, pcd, xyz, txt and pts";
+pub(super) const ANY: &str = "obj, stl, ply, glb, gltf, urdf, pcd, xyz, txt and pts";
 
 impl Format {
     fn of(extension: &str) -> Option<Self> {
@@ -30,6 +32,7 @@ impl Format {
             "glb" | "gltf" => Self::Gltf,
             "pcd" => Self::Pcd,
             "xyz" | "txt" | "pts" => Self::Xyz,
+            "urdf" => Self::Urdf,
             _ => return None,
         })
     }
@@ -45,6 +48,9 @@ impl Format {
             Self::Pcd => {
                 "check that it is a PCD of version 0.7 with fields x, y, z, or save it as binary PCD"
             }
+            Self::Urdf => {
+                "check the file and what it names; a xacro becomes a URDF by `xacro robot.urdf.xacro > robot.urdf`"
+            }
             Self::Xyz => "write x y z or x y z nx ny nz on each line, and put # before headings",
         }
     }
@@ -52,7 +58,12 @@ impl Format {
 
 /// A file read into memory.
 pub(super) struct Source<'a> {
+    /// Its name as it was given.
     pub(super) path: &'a Path,
+    /// Where it is.
+    pub(super) file: PathBuf,
+    /// The link of a URDF that was asked for.
+    pub(super) link: Option<String>,
     pub(super) format: Format,
     pub(super) bytes: Vec<u8>,
 }
@@ -60,15 +71,17 @@ pub(super) struct Source<'a> {
 impl<'a> Source<'a> {
     /// Reads the whole file; `known` lists the supported extensions for the error message.
     pub(super) fn open(path: &'a Path, known: &'static str) -> Result<Self, FileError> {
-        let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let (file, link) = split_link(path);
+        let extension = file.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let format = Format::of(&extension);
-        let bytes = read(path)?;
+        let file = locate(&file, None)?;
+        let bytes = read_at(path, &file)?;
         let format =
             format.ok_or_else(|| FileError::UnknownFormat { path: path.into(), extension, known })?;
         if bytes.is_empty() {
             return Err(FileError::Empty { path: path.into() });
         }
-        Ok(Self { path, format, bytes })
+        Ok(Self { path, file, link, format, bytes })
     }
 
     pub(super) fn malformed(&self, place: Place, reason: impl Into<String>) -> FileError {
@@ -90,12 +103,17 @@ impl<'a> Source<'a> {
 }
 
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
+    read_at(path, path)
+}
+
+/// The content of `file`, which errors call `path`.
+fn read_at(path: &Path, file: &Path) -> Result<Vec<u8>, FileError> {
     let unreadable = |reason: &str| FileError::Unreadable { path: path.into(), reason: reason.into() };
     let from_io = |e: std::io::Error| match e.kind() {
         ErrorKind::NotFound => FileError::Missing { path: path.into() },
         _ => unreadable(&e.to_string()),
     };
-    let metadata = fs::metadata(path).map_err(from_io)?;
+    let metadata = fs::metadata(file).map_err(from_io)?;
     if metadata.is_dir() {
         return Err(unreadable("it is a directory"));
     }
@@ -103,5 +121,5 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     if !metadata.is_file() {
         return Err(unreadable("it is not a regular file"));
     }
-    fs::read(path).map_err(from_io)
+    fs::read(file).map_err(from_io)
 }

@@ -21,7 +21,7 @@ pub fn read_supporter(path: &Path) -> Result<SupporterFile, FileError> {
     let source = Source::open(path, ANY)?;
     match source.format {
         Format::Pcd | Format::Xyz => cloud::read(&source).map(SupporterFile::Cloud),
-        Format::Stl | Format::Gltf => mesh::read(&source).map(SupporterFile::Mesh),
+        Format::Stl | Format::Gltf | Format::Urdf => mesh::read(&source).map(SupporterFile::Mesh),
         Format::Obj | Format::Ply => match mesh::read(&source) {
             Err(FileError::CloudNotMesh { .. }) => cloud::read(&source).map(SupporterFile::Cloud),
             mesh => mesh.map(SupporterFile::Mesh),

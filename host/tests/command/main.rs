@@ -1,6 +1,7 @@
 //! Runs of the command `hangpose` on shapes with known results.
 
 mod bad_input;
+mod batch;
 mod depth;
 mod how_and_where;
 mod inspect;
@@ -11,6 +12,7 @@ mod placement;
 mod planning;
 mod shapes;
 mod shell;
+mod urdf;
 mod usage;
 mod view;
 

@@ -101,9 +101,11 @@ fn implausible_sizes_name_the_likely_unit() {
         vertices.iter_mut().flatten().for_each(|x| *x *= factor);
         scene.write("scaled.obj", shapes::obj(&(vertices, triangles)))
     };
-    for (factor, unit, scale) in
-        [(1000.0, "millimetres", "0.001"), (100.0, "centimetres", "0.01"), (0.001, "kilometres", "1000")]
-    {
+    for (factor, unit, scale) in [
+        (1000.0, "millimetres", "0.001"),
+        (100.0, "centimetres or inches", "0.01 or 0.0254"),
+        (0.001, "kilometres", "1000"),
+    ] {
         let path = scaled(factor);
         let text = run!("predict", "--object", path, "--supporter", scene.peg).stderr;
         let end = format!("if its unit is {unit}, pass --object-scale {scale}\n");

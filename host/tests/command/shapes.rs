@@ -129,7 +129,7 @@ pub(crate) fn peg() -> Vec<[f64; 6]> {
 }
 
 /// A surface over the unit square that is periodic in both directions.
-fn grid(m: usize, n: usize, at: impl Fn(f64, f64) -> [f64; 3]) -> Mesh {
+pub(crate) fn grid(m: usize, n: usize, at: impl Fn(f64, f64) -> [f64; 3]) -> Mesh {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for i in 0..m {
         for j in 0..n {

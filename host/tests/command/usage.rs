@@ -150,3 +150,43 @@ fn the_papers_table_agrees_with_the_json() {
         assert!(row.iter().zip(expected).all(|(shown, value)| (shown - value).abs() < 0.051), "{line}");
     }
 }
+
+/// What a run with a bad option or a bad file writes to a terminal.
+#[cfg(unix)]
+fn on_a_terminal(arguments: &str, no_colour: &str) -> String {
+    let line = format!("{} {arguments}", env!("CARGO_BIN_EXE_hangpose"));
+    let mut command = Command::new("script");
+    command
+        .args(["--quiet", "--command", &line, "/dev/null"])
+        .env("TERM", "xterm")
+        .env("NO_COLOR", no_colour);
+    finish(command.stdin(std::process::Stdio::null())).stdout
+}
+
+#[test]
+#[cfg(unix)]
+fn colours_are_for_terminals_only() {
+    for (arguments, words) in
+        [("inspect none.obj", "no such file"), ("inspect --colour", "unexpected argument")]
+    {
+        let shown = on_a_terminal(arguments, "");
+        assert!(shown.contains(words) && shown.contains("\u{1b}[1m\u{1b}[31merror"), "{shown:?}");
+        let plain = on_a_terminal(arguments, "1");
+        assert!(plain.contains(words) && !plain.contains("\u{1b}[3"), "{plain:?}");
+        let piped = finish(command().args(arguments.split(' '))).stderr;
+        assert!(piped.contains(words) && !piped.contains('\u{1b}'), "{piped:?}");
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn a_batch_shows_its_progress_on_a_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = folder.path().join("out.csv");
+    let shown =
+        on_a_terminal(&format!("batch {} -o {}", sample("pairs.csv").display(), output.display()), "");
+    assert!(
+        shown.contains("of 4 pairs, ") && shown.contains(" left") && shown.contains("4 hang"),
+        "{shown:?}"
+    );
+}

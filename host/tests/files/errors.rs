@@ -38,12 +38,21 @@ fn no_file_no_content_no_format() {
     bad_mesh(
         "mug.step",
         "x",
-        &["\".step\" is not a supported format", "supported are obj, stl, ply, glb and gltf", "export"],
+        &["\".step\" is not a supported format", "supported are obj, stl, ply, glb, gltf and urdf", "export"],
+    );
+    bad_mesh(
+        "mug.dae",
+        "x",
+        &["supported are obj,", "otherwise convert it", "assimp export mesh.dae mesh.obj"],
     );
     bad_mesh("mug", "x", &["the file name has no extension"]);
     bad_cloud("scan.las", "x", &["supported are ply, pcd, xyz, txt and pts"]);
     let supporter = read_supporter(&file("rack.fbx", "x").path).unwrap_err();
-    assert_says(supporter, "rack.fbx", &["supported are obj, stl, ply, glb, gltf, pcd, xyz, txt and pts"]);
+    assert_says(
+        supporter,
+        "rack.fbx",
+        &["supported are obj, stl, ply, glb, gltf, urdf, pcd, xyz, txt and pts"],
+    );
 }
 
 #[test]

@@ -23,6 +23,7 @@ fn samples() -> Vec<(&'static str, Vec<u8>)> {
         ("a.pcd", pcd_binary()),
         ("a.pcd", pcd_compressed()),
         ("a.xyz", XYZ.into()),
+        ("a.urdf", URDF.into()),
     ]
 }
 

@@ -8,3 +8,4 @@ mod polygons;
 #[path = "../random/mod.rs"]
 mod random;
 mod samples;
+mod urdf;

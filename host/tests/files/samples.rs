@@ -257,3 +257,28 @@ pub(crate) const PLY_CLOUD: &str = "ply\nformat ascii 1.0\nelement vertex 3\npro
 
 pub(crate) const XYZ: &str =
     "\u{feff}# a scan\r\n3\r\n1 2 3 1 0 0 # first\r\n4,5,6,0,1,0\r\n\r\n// rest\r\n7;8;9;0;0;-1\r\n";
+
+/// A rack of a post and two arms, one on the other, of which the first has no visual meshes.
+pub(crate) const URDF: &str = r#"<?xml version="1.0"?>
+<robot name="rack">
+  <link name="post">
+    <visual><origin xyz="0 0 0.5"/><geometry><box size="0.2 0.4 1"/></geometry></visual>
+    <collision><geometry><sphere radius="9"/></geometry></collision>
+  </link>
+  <link name="arm">
+    <collision><origin rpy="0 1.5707963267948966 0"/><geometry><cylinder radius="0.1" length="2"/></geometry></collision>
+  </link>
+  <link name="tip">
+    <visual><geometry><sphere radius="0.25"/></geometry></visual>
+    <visual><origin xyz="0 0 2"/><geometry><capsule radius="0.25" length="1"/></geometry></visual>
+  </link>
+  <link name="camera"/>
+  <joint name="a" type="revolute">
+    <parent link="post"/><child link="arm"/>
+    <origin xyz="0 0 3" rpy="0 0 1.5707963267948966"/><axis xyz="0 0 1"/>
+    <limit lower="0" upper="1" effort="1" velocity="1"/>
+  </joint>
+  <joint name="b" type="fixed"><parent link="arm"/><child link="tip"/><origin xyz="2 0 0"/></joint>
+  <joint name="c" type="fixed"><parent link="arm"/><child link="camera"/></joint>
+</robot>
+"#;

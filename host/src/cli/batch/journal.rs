@@ -1,7 +1,7 @@
 //! The journal of a run: the rows that are done, so that a run that was ended goes on where it was.
 //!
-//! The first line says which run it is, and each other line has the rows of a pair. A line that was cut off is dropped. The
-//! file is locked while a run writes to it.
+//! The first line says which run it is, and each other line has the rows of a pair. A line that was cut off is dropped.
+//! The file is locked while a run writes to it.
 
 use super::row::Row;
 use anyhow::{Context, Result, bail, ensure};
@@ -31,6 +31,9 @@ struct Line {
     rows: Vec<Row>,
 }
 
+/// The number of a pair that is done, and its rows.
+pub(super) type Done = (u64, Vec<Row>);
+
 /// The open journal.
 pub(super) struct Journal {
     file: File,
@@ -46,7 +49,7 @@ impl Journal {
     }
 
     /// Opens the journal at `path` and returns the rows that are in it. With `goes_on` it may have some.
-    pub(super) fn open(path: &Path, run: &Run, goes_on: bool) -> Result<(Self, Vec<(u64, Vec<Row>)>)> {
+    pub(super) fn open(path: &Path, run: &Run, goes_on: bool) -> Result<(Self, Vec<Done>)> {
         let name = path.display();
         let mut file = lock(path)?;
         let mut text = Vec::new();
@@ -154,8 +157,8 @@ impl Run {
         ensure!(self.version == now.version, "it was of version {}, this is {}", self.version, now.version);
         ensure!(self.pairs == now.pairs, "the table of pairs has changed");
         ensure!(self.options == now.options, "it had {}, now there are {}", words(self), words(now));
-        ensure!(self.params == now.params, "a file of constants has changed");
         ensure!(self.shard == now.shard, "its shard was {}, now it is {}", shard(self), shard(now));
+        ensure!(self.params == now.params, "a file of constants has changed");
         Ok(())
     }
 }

@@ -16,7 +16,7 @@ use super::{BatchArguments, progress, terminal};
 use anyhow::{Context, Result, anyhow};
 use hangpose::hanging::HangingPose;
 use hangpose::{Monitor, predict_poses};
-use journal::{Journal, Run};
+use journal::{Done, Journal, Run};
 use models::{ObjectModel, Store, SupporterModel};
 use pairs::Pair;
 use row::Row;
@@ -65,7 +65,8 @@ pub(crate) fn run(arguments: &BatchArguments) -> Result<ExitCode> {
     let range = arguments.shard.range(all.len());
     let pairs = &all[range.clone()];
     let destination = Output::prepare(output, &inputs(table, pairs))?;
-    let journal_path = Journal::path(output);
+    // Beside the file that a symbolic link leads to, so that all runs that write it meet there.
+    let journal_path = Journal::path(&std::fs::canonicalize(output).unwrap_or_else(|_| output.clone()));
     let run = Run {
         version: env!("CARGO_PKG_VERSION").into(),
         pairs: hash(&content),
@@ -121,12 +122,7 @@ fn jobs(arguments: &BatchArguments) -> usize {
 }
 
 /// Predicts pairs in their order on `jobs` threads, adds each to the journal as it is done, and returns their rows.
-fn predict_all(
-    pairs: &[&Pair],
-    jobs: usize,
-    memory: usize,
-    journal: &Mutex<Journal>,
-) -> Result<Vec<(u64, Vec<Row>)>> {
+fn predict_all(pairs: &[&Pair], jobs: usize, memory: usize, journal: &Mutex<Journal>) -> Result<Vec<Done>> {
     // Half for either side.
     let objects = Store::<ObjectModel>::new(pairs.iter().copied(), memory / 2);
     let supporters = Store::<SupporterModel>::new(pairs.iter().copied(), memory / 2);

@@ -139,8 +139,8 @@ struct Entry<T> {
 
 /// The models that pairs still need, in limited memory.
 ///
-/// A model is read when the first pair needs it and dropped when no pair does any more. If the models take more memory than
-/// they may, those that are needed last are dropped and read again.
+/// A model is read when the first pair needs it and dropped when no pair does any more. If the models take more memory
+/// than they may, those that are needed last are dropped and read again.
 pub(super) struct Store<T> {
     entries: Mutex<HashMap<String, Entry<T>>>,
     /// Memory that the models may take while no pair uses them, bytes.

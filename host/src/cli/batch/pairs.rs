@@ -4,6 +4,7 @@ use super::options::{self, Column, Given, PairOptions};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use csv::{ErrorKind, Position, ReaderBuilder, StringRecord, Trim};
 use hangpose::Params;
+use hangpose::files::is_located;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -34,8 +35,8 @@ pub(super) struct Wish {
 /// Columns that are no options.
 const OWN: [&str; 3] = ["id", "object", "supporter"];
 
-/// Reads the pairs of a table whose content is `bytes`. All of them are checked before any is predicted, so that a mistake
-/// is reported at once.
+/// Reads the pairs of a table whose content is `bytes`. All of them are checked before any is predicted, so that a
+/// mistake is reported at once.
 pub(super) fn read(path: &Path, bytes: &[u8], given: &Given) -> Result<Vec<Pair>> {
     // Without columns, so that a mistake on the command line is not reported as one of a line.
     Wish::new(given.with_cells(&[], Path::new(""))?)?;
@@ -55,7 +56,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], given: &Given) -> Result<Vec<Pair>
                 wish
             }
         };
-        let [object_path, supporter_path] = [&name.object, &name.supporter].map(|file| folder.join(file));
+        let [object_path, supporter_path] = [&name.object, &name.supporter].map(|file| beside(folder, file));
         Ok(Pair { name, object_path, supporter_path, wish })
     };
     lines(path, bytes, &columns)?.into_iter().map(pair).collect()
@@ -64,6 +65,11 @@ pub(super) fn read(path: &Path, bytes: &[u8], given: &Given) -> Result<Vec<Pair>
 /// Reads what a table calls its pairs, without their options.
 pub(super) fn names(path: &Path, bytes: &[u8]) -> Result<Vec<Name>> {
     Ok(lines(path, bytes, &options::columns())?.into_iter().map(|line| line.name).collect())
+}
+
+/// A file that a table in a folder names.
+fn beside(folder: &Path, name: &str) -> PathBuf {
+    if is_located(name.as_ref()) { name.into() } else { folder.join(name) }
 }
 
 /// A line of a table.

@@ -50,7 +50,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<CloudFile, FileError> {
                 ..RawCloud::default()
             }
         }
-        Format::Stl | Format::Gltf => return Err(mesh_not_cloud()),
+        Format::Stl | Format::Gltf | Format::Urdf => return Err(mesh_not_cloud()),
     }
     .finish(source)
 }

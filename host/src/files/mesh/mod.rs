@@ -5,6 +5,7 @@ mod obj;
 mod polygon;
 mod raw;
 mod stl;
+mod urdf;
 mod write;
 
 use std::path::Path;
@@ -30,7 +31,9 @@ pub struct MeshFile {
     pub notes: Vec<String>,
 }
 
-/// Reads a mesh: OBJ, STL, PLY, GLB or glTF, according to the extension.
+/// Reads a mesh: OBJ, STL, PLY, GLB, glTF or URDF, according to the extension.
+///
+/// The path may begin with `package://`, and `robot.urdf#link` is one link of a URDF.
 pub fn read_mesh(path: &Path) -> Result<MeshFile, FileError> {
     read(&Source::open(path, MESHES)?)
 }
@@ -41,6 +44,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<MeshFile, FileError> {
         Format::Stl => stl::read(source)?,
         Format::Ply => of_ply(ply::read(source)?),
         Format::Gltf => gltf::read(source)?,
+        Format::Urdf => urdf::read(source)?,
         Format::Pcd | Format::Xyz => {
             return Err(FileError::CloudNotMesh { path: source.path.into() });
         }

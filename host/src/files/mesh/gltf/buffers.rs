@@ -48,7 +48,7 @@ fn from_uri(source: &Source<'_>, uri: &str) -> Result<Vec<u8>, String> {
     }
     let name =
         percent_decode_str(uri).decode_utf8().map_err(|_| format!("its file name {uri} is not UTF-8"))?;
-    let path = source.path.parent().unwrap_or(source.path).join(name.as_ref());
+    let path = source.file.parent().unwrap_or(&source.file).join(name.as_ref());
     if !path.is_file() {
         return Err(format!("its file {} is missing: keep it beside the glTF", path.display()));
     }
