@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds and installs the C library and links it from outside the tree in every way that the README describes: through
+# Builds and installs the C library and links it from outside the tree in every way that docs/book/build.md describes: through
 # CMake and pkg-config, static and shared, with gcc and clang, from the Debian package, and built from source.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)

@@ -42,6 +42,9 @@ command -v dpkg-shlibdeps >/dev/null || missing+=(dpkg-dev)
 command -v file >/dev/null || missing+=(file)
 pkg-config --exists eigen3 2>/dev/null || missing+=(libeigen3-dev)
 
+# The virtual environments of Python, for the tools of the book and of the comparisons.
+python3 -c 'import ensurepip' 2>/dev/null || missing+=(python3-venv)
+
 if command -v rustup >/dev/null; then
     have=$(rustup component list --installed)
     for component in rustfmt clippy; do

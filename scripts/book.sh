@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# Builds the book in build/book and checks it and the README: scripts/book/check.py says what is checked.
+#   --figures   draws the figures of docs/figures that are made by scripts/book/figures.py
+#   --picture   draws the moving picture docs/hang.gif
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+cd "$root"
+
+tools=build/book-tools
+if ! cmp -s docs/book/requirements.txt "$tools/requirements.txt"; then
+    rm -rf "$tools"
+    python3 -m venv "$tools"
+    "$tools/bin/python" -m pip install --quiet --disable-pip-version-check --requirement docs/book/requirements.txt
+    cp docs/book/requirements.txt "$tools/"
+fi
+export PATH=$root/$tools/bin:$PATH MPLBACKEND=svg
+
+if [ -z "${HANGPOSE:-}" ]; then
+    cargo build --quiet -p hangpose
+    HANGPOSE=${CARGO_TARGET_DIR:-$root/target}/debug/hangpose
+fi
+export HANGPOSE
+
+case ${1:-} in
+--figures) exec python scripts/book/figures.py ;;
+--picture) exec python scripts/book/picture.py ;;
+esac
+
+python scripts/book/figures.py --check &
+figures=$!
+python scripts/book/check.py
+wait "$figures"
+
+# The pages link to source files of the repository: these are copied beside them.
+rm -rf build/book
+log=$(mdbook build docs --dest-dir "$root/build/book/docs" 2>&1) || { echo "$log" >&2; exit 1; }
+if grep -E "WARN|ERROR" <<<"$log"; then
+    echo "book: mdbook has complaints" >&2
+    exit 1
+fi
+{ grep -rhoE '\]\((\.\./)+[^)#: ]+' docs/*.md docs/book/*.md || true; } | sed -E 's/\]\((\.\.\/)+//' | sort -u |
+    while read -r file; do if [ -f "$file" ]; then cp --parents "$file" build/book/; fi; done
+
+# linkchecker gives up the rights of root, and may not be allowed to read here.
+copy=$(mktemp -d)
+trap 'rm -rf "$copy"' EXIT
+cp -r build/book "$copy/"
+chmod -R a+rX "$copy"
+printf '[AnchorCheck]\n' >"$copy/config"
+linkchecker --config "$copy/config" --no-status --no-warnings --recursion-level=-1 "$copy/book/docs/index.html" >"$copy/links" 2>&1 ||
+    { cat "$copy/links" >&2; exit 1; }
+echo "book: build/book/docs/index.html, all links lead somewhere"
