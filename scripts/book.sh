@@ -47,6 +47,6 @@ trap 'rm -rf "$copy"' EXIT
 cp -r build/book "$copy/"
 chmod -R a+rX "$copy"
 printf '[AnchorCheck]\n' >"$copy/config"
-linkchecker --config "$copy/config" --no-status --no-warnings --recursion-level=-1 "$copy/book/docs/index.html" >"$copy/links" 2>&1 ||
+linkchecker --config "$copy/config" --no-status --recursion-level=-1 "$copy/book/docs/index.html" >"$copy/links" 2>&1 ||
     { cat "$copy/links" >&2; exit 1; }
 echo "book: build/book/docs/index.html, all links lead somewhere"
