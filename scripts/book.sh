@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # Builds the book in build/book and checks it and the README: scripts/book/check.py says what is checked.
 #   --figures   draws the figures of docs/figures that are made by scripts/book/figures.py
-#   --picture   draws the moving picture docs/hang.gif
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
@@ -21,10 +20,9 @@ if [ -z "${HANGPOSE:-}" ]; then
 fi
 export HANGPOSE
 
-case ${1:-} in
---figures) exec python scripts/book/figures.py ;;
---picture) exec python scripts/book/picture.py ;;
-esac
+if [ "${1:-}" = --figures ]; then
+    exec python scripts/book/figures.py
+fi
 
 python scripts/book/figures.py --check &
 figures=$!
