@@ -1,8 +1,9 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench tables meant reach calibrate peer lib install deb samples header clean
+.PHONY: help setup demo picture test bench tables meant reach calibrate peer lib install deb samples header clean
 
 help:
 	@echo "make demo     predict how the sample mug hangs on the sample hook, plan a path, simulate it and draw it"
+	@echo "make picture  make the pictures of the README anew: docs/demo.png and docs/hang.gif"
 	@echo "make test     run all checks and tests"
 	@echo "make bench    measure time and memory"
 	@echo "make peer     compare time and poses with another implementation: PEER=peer.py [MESHES=folder]"
@@ -27,6 +28,10 @@ demo: setup
 		--plan --start samples/mug_start.json --json build/demo.json
 	@echo "The poses and the path are in build/demo.json. Simulation in Bullet:"
 	cargo run --release -p host-tests --bin drop -- --object samples/mug.obj --supporter samples/hook.obj --poses build/demo.json --picture build/demo.png
+
+picture: demo
+	cargo run --release -p host-tests --bin drop -- --object samples/mug.obj --supporter samples/hook.obj --poses build/demo.json \
+		--picture docs/demo.png --film docs/hang.gif
 
 test: setup
 	cargo fmt --all --check

@@ -237,7 +237,7 @@ impl Params {
     }
 
     /// Unit vector opposite to gravity, in supporter coordinates.
-    pub(crate) fn up(&self) -> Vector {
+    pub fn up(&self) -> Vector {
         -Vector::from(self.gravity).normalize()
     }
 

@@ -116,8 +116,7 @@ pub unsafe extern "C" fn hangpose_request_init(
 impl hangpose_request {
     /// Anything anywhere.
     pub(crate) fn any() -> Self {
-        let Request { allow, prefer, on: _, by: _, approach: _, scene: _, hung: _, distinct, symmetries: _ } =
-            Request::ANY;
+        let Request { allow, prefer, distinct, .. } = Request::ANY;
         Self {
             struct_size: size_of::<Self>() as u32,
             allow: mask(allow),
@@ -205,6 +204,7 @@ impl hangpose_request {
             hung,
             distinct: Distance { position: self.distinct_position, rotation: self.distinct_rotation },
             symmetries,
+            watch: None,
         };
         match request.validate() {
             Ok(()) => Ok(request),

@@ -1,6 +1,7 @@
 //! Evaluates predicted poses: generates objects and supporters of many kinds and simulates the release in two physics
 //! engines.
 
+pub mod film;
 pub mod gallery;
 pub mod judge;
 mod predicted;

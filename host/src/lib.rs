@@ -22,6 +22,7 @@ mod analyze;
 pub mod files;
 pub mod parry;
 mod scan;
+pub mod view;
 
 pub use analyze::{LIMITS, TooLarge, analyze_object, analyze_supporter, predict_poses, sample_supporter};
 pub use hangpose_core::*;

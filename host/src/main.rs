@@ -13,6 +13,7 @@ fn main() -> ExitCode {
     let result = match &command {
         cli::Command::Predict(arguments) => cli::predict::run(arguments),
         cli::Command::Plan(arguments) => cli::plan::run(arguments),
+        cli::Command::View(arguments) => cli::view::run(arguments),
         cli::Command::Inspect(arguments) => cli::inspect::run(arguments),
         cli::Command::Scan(arguments) => cli::scan::run(arguments),
     };

@@ -28,6 +28,7 @@ mod stage;
 mod supporter;
 #[cfg(test)]
 mod tests;
+mod watch;
 
 pub use crate::perception::cleaning::CleaningCounts;
 pub use counts::Counts;
@@ -44,3 +45,4 @@ pub use request::{Approach, Distance, Hung, Request, RequestError};
 pub use settling::{Rest, SettlingCounts, Tolerance};
 pub use stage::Stage;
 pub use supporter::{NormalCounts, Supporter};
+pub use watch::{Watch, watch_release};

@@ -2,6 +2,7 @@
 
 use super::Object;
 use super::region::{Region, RegionError};
+use super::watch::Watch;
 use crate::geometry::{MAX_COORDINATE, MAX_FOLD, Pose, Symmetry, Vector};
 use crate::mechanics::{Kind, Kinds};
 use core::fmt;
@@ -30,6 +31,8 @@ pub struct Request<'a> {
     /// Turns after which the object is the same, so that poses that differ by one are one pose; `None` for those that were
     /// detected, [`Object::symmetries`]. One after another, two of them about different axes may be made.
     pub symmetries: Option<&'a [Symmetry]>,
+    /// Called for each candidate that is released. It changes nothing in the prediction.
+    pub watch: Option<Watch<'a>>,
 }
 
 /// A straight way of the object to its release pose, free of collisions.
@@ -79,6 +82,7 @@ impl<'a> Request<'a> {
         hung: &[],
         distinct: Distance { position: 0.02, rotation: 0.35 },
         symmetries: None,
+        watch: None,
     };
 
     /// Checks every value.

@@ -3,7 +3,7 @@
 use super::AnalysisError;
 use super::method::{self, SupporterPlaces, SupporterSlots};
 use super::samples::SupporterCloud;
-use crate::geometry::{Cloud, PointTree, PointTreeSlots, Vector};
+use crate::geometry::{Cloud, Point, PointTree, PointTreeSlots, Vector};
 use crate::mechanics::{Room, Support};
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
@@ -158,6 +158,11 @@ impl<'m> Supporter<'m> {
     /// Points that no viewpoint saw and that were guessed: the far sides of bars and plates.
     pub fn guessed(&self) -> usize {
         self.guessed
+    }
+
+    /// Positions of a representative part of the points that were [guessed](Self::guessed), supporter coordinates, metres.
+    pub fn guessed_points(&self) -> impl Iterator<Item = Point> + 'm {
+        self.support.guessed()
     }
 
     /// What had to be done to the normals that were given.

@@ -703,6 +703,44 @@ fn any_pose_can_be_let_go() {
 }
 
 #[test]
+fn whoever_watches_sees_each_release_and_how_it_ended() {
+    let (scene, params) = (Scene::key_on_peg(), product());
+    scene.analyse(&params, &Monitor::new(), |object, supporter| {
+        let seen = std::sync::Mutex::new(std::vec::Vec::new());
+        let watch = |pose: &Pose, fate| seen.lock().unwrap().push((*pose, fate));
+        let request = Request { watch: Some(Watch(&watch)), ..Request::ANY };
+        let (mut poses, mut unwatched) = ([HangingPose::default(); 3], [HangingPose::default(); 3]);
+        let mut memory = vec![0; predict_bytes(&scene.limits(&params))];
+        let monitor = Monitor::new();
+        let found =
+            super::predict(object, supporter, &request, &params, &mut poses, &mut memory, &monitor).unwrap();
+        let counts = found.counts.settling;
+        let best = found.poses[0];
+        // It changes nothing.
+        assert_eq!(predict(object, supporter, &params, &mut unwatched, &monitor).unwrap().poses[0], best);
+        let seen = seen.into_inner().unwrap();
+        assert_eq!(seen.len(), counts.released);
+        assert_eq!(seen.iter().filter(|(_, fate)| *fate == Fate::Rests).count(), counts.at_rest);
+        // Each release ends as it did, and the best one where it was said to.
+        let mut replay = |pose: &Pose| {
+            let mut track = std::vec::Vec::new();
+            let mut watch = |seconds: f32, pose: &Pose| track.push((seconds, *pose));
+            let release = (object, supporter);
+            let end = watch_release(release, pose, &params, &mut memory, &Monitor::new(), &mut watch);
+            let end = end.unwrap().unwrap();
+            assert_eq!(track.last().unwrap().1, end.pose);
+            assert!(track.is_sorted_by(|(earlier, _), (later, _)| earlier < later));
+            end
+        };
+        for (pose, fate) in seen.iter().take(30) {
+            assert_eq!(replay(pose).fate, *fate);
+        }
+        let end = replay(&best.pose);
+        assert_eq!((end.fate, end.pose), (Fate::Rests, best.rest.unwrap().pose));
+    });
+}
+
+#[test]
 fn no_room_for_poses_is_no_rejection() {
     let scene = Scene::ring_on_peg(0.0);
     scene.analyse(&product(), &Monitor::new(), |object, supporter| {

@@ -1,5 +1,6 @@
 //! The outcome of a release: rest, fall or continued motion.
 
+use super::body::State;
 use super::constants::{
     FALL_EXTENT_RATIO, FALL_HEIGHT, FREE_TRAVEL, FREEING_TIME, GRAVITY, REST_WINDOW, ROTATION_OFF_ANGLE,
     SWING_REST_SPEED, SWING_TIME,
@@ -13,6 +14,7 @@ use crate::params::Params;
 
 /// Outcome of the release of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum Fate {
     /// The object rests on the supporter.
     Rests,
@@ -47,9 +49,22 @@ pub(crate) fn settle(
     sleeps: &mut [Sleep],
     meter: &mut Meter,
 ) -> Result<Settled, Stop> {
+    settle_watched((body, support), release, down, settings, sleeps, meter, |_| ())
+}
+
+/// [`settle`], and calls `watch` with the state after each time step.
+pub(crate) fn settle_watched(
+    (body, support): (&Body, &Support),
+    release: &Pose,
+    down: &Vector,
+    settings: Settings,
+    sleeps: &mut [Sleep],
+    meter: &mut Meter,
+    watch: impl FnMut(&State),
+) -> Result<Settled, Stop> {
     let mut motion = Motion::new((body, support), body.at(release), settings, sleeps);
     let steps = settings.steps(settings.settle_time);
-    let fate = simulate(&mut motion, body, down, steps, meter)?.unwrap_or(Fate::Moves);
+    let fate = simulate(&mut motion, body, down, steps, meter, watch)?.unwrap_or(Fate::Moves);
     Ok(Settled { fate, pose: body.pose(&motion.state) })
 }
 
@@ -65,19 +80,20 @@ pub(crate) fn swing_out(
 ) -> Result<Settled, Stop> {
     let settings = Settings::swinging(params);
     let mut motion = Motion::new((body, support), body.at(release), settings, sleeps);
-    let fate = simulate(&mut motion, body, down, settings.steps(SWING_TIME), meter)?;
+    let fate = simulate(&mut motion, body, down, settings.steps(SWING_TIME), meter, |_| ())?;
     let hangs = motion.touches && motion.state.velocity.norm() < SWING_REST_SPEED;
     let fate = fate.unwrap_or(if hangs { Fate::Rests } else { Fate::Moves });
     Ok(Settled { fate, pose: body.pose(&motion.state) })
 }
 
-/// Simulates until the body rests or falls, or returns `None` after `steps`.
+/// Simulates until the body rests or falls, or returns `None` after `steps`; calls `watch` after each of them.
 fn simulate(
     motion: &mut Motion,
     body: &Body,
     down: &Vector,
     steps: usize,
     meter: &mut Meter,
+    mut watch: impl FnMut(&State),
 ) -> Result<Option<Fate>, Stop> {
     let window = motion.settings.steps(REST_WINDOW);
     let rest_travel = motion.settings.rest_speed * REST_WINDOW;
@@ -86,6 +102,7 @@ fn simulate(
     for step in 1..=steps {
         motion.step(&(down * GRAVITY), meter)?;
         let state = &motion.state;
+        watch(state);
         if down.dot(&(state.centre - start.centre)) > max_sinking(body) {
             let turned = start.rotation.angle_to(&state.rotation);
             return Ok(Some(if turned > ROTATION_OFF_ANGLE { Fate::RotatesOff } else { Fate::SlidesOff }));

@@ -101,6 +101,11 @@ impl<'a> Support<'a> {
         self.representatives.iter().map(move |&index| points[index as usize])
     }
 
+    /// Positions of the patches that no viewpoint saw and that were guessed, supporter coordinates, metres.
+    pub(crate) fn guessed(&self) -> impl Iterator<Item = Point> + 'a {
+        self.positions().zip(self.patches).filter(|(_, patch)| patch.is_guessed()).map(|(point, _)| point)
+    }
+
     /// Positions and unit normals of the patches on which something may hang, supporter coordinates, metres.
     pub(crate) fn hangable_surface(&self) -> impl Iterator<Item = (&'a Point, &'a Vector)> {
         let (points, patches) = (self.tree.points(), self.patches.iter());

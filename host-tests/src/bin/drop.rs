@@ -6,6 +6,7 @@ use clap::Parser;
 use hangpose::files::read_mesh;
 use hangpose::geometry::Pose;
 use hangpose::motion::{Path, Waypoint};
+use host_tests::film;
 use host_tests::gallery::{self, Way};
 use host_tests::judge::replay::replay;
 use host_tests::judge::{Bullet, Judge, Scene};
@@ -30,7 +31,13 @@ struct Arguments {
     /// does.
     #[arg(long, value_name = "PNG")]
     picture: PathBuf,
+    /// File for a moving picture of the path and of the release at its end in Bullet.
+    #[arg(long, value_name = "GIF")]
+    film: Option<PathBuf>,
 }
+
+/// Duration of the release in the moving picture, seconds, and the time between two of its poses.
+const RELEASE: (f64, f64) = (1.5, 0.05);
 
 #[derive(Deserialize)]
 struct Prediction {
@@ -68,6 +75,22 @@ impl From<&PlannedWaypoint> for Waypoint {
     fn from(&PlannedWaypoint { seconds, position, quaternion_xyzw }: &PlannedWaypoint) -> Self {
         Self { seconds, pose: pose(position, quaternion_xyzw) }
     }
+}
+
+/// The object after its release at a waypoint, simulated in Bullet.
+fn released(scene: &Scene, from: &Waypoint) -> Vec<Waypoint> {
+    let (duration, step) = RELEASE;
+    let mut world = Bullet::default().world(scene);
+    world.release(&from.pose.cast());
+    let mut after = Vec::new();
+    let mut seconds = 0.0;
+    while seconds < duration {
+        world.pass(step);
+        seconds += step;
+        let pose = world.state().pose.cast();
+        after.push(Waypoint { seconds: from.seconds + seconds as f32, pose });
+    }
+    after
 }
 
 fn main() -> Result<()> {
@@ -128,6 +151,14 @@ fn main() -> Result<()> {
         let rest = replayed.verdict.figures.rest;
         gallery::write_way(&arguments.picture, &object, &supporter, &way, &rest).with_context(picture)?;
         println!("the object along the path and at rest: {}", picture());
+        if let Some(film) = &arguments.film {
+            // The last waypoints lower the object into contact; here the gripper lets go before.
+            let mut poses = waypoints[..=planned.release.min(waypoints.len() - 1)].to_vec();
+            poses.extend(released(&scene, &poses[poses.len() - 1]));
+            film::write(film, &object, &supporter, &poses, centre)
+                .with_context(|| film.display().to_string())?;
+            println!("moving picture: {}", film.display());
+        }
         ensure!(replayed.passes(), "the path to pose {rank} does not pass the replay");
     } else if let Some((release, rest)) = best {
         gallery::write(&arguments.picture, &object, &supporter, &release, &rest).with_context(picture)?;

@@ -288,6 +288,12 @@ pub(super) fn text_in_frame(document: &impl Serialize, origin: [f64; 3]) -> Stri
         return text(document);
     }
     let mut document = serde_json::to_value(document).expect("every key is a string");
+    shift(&mut document, origin);
+    text(&document)
+}
+
+/// Moves the poses and places of a prediction or a plan by `origin`, metres.
+pub(super) fn shift(document: &mut Value, origin: [f64; 3]) {
     for pose in document.get_mut("poses").and_then(Value::as_array_mut).into_iter().flatten() {
         for matrix in ["pose", "release_pose", "rest_pose"] {
             add(&mut pose[matrix], [3, 7, 11], origin);
@@ -301,8 +307,12 @@ pub(super) fn text_in_frame(document: &impl Serialize, origin: [f64; 3]) -> Stri
         }
         move_path(pose, origin);
     }
-    move_path(&mut document, origin);
-    text(&document)
+    move_path(document, origin);
+}
+
+/// The poses of a prediction as values.
+pub(super) fn values(poses: &[Pose]) -> Vec<Value> {
+    poses.iter().map(|pose| serde_json::to_value(pose).expect("every key is a string")).collect()
 }
 
 /// Moves the path of a value, or the place at which it has none.

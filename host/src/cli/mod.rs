@@ -18,8 +18,10 @@ mod recording;
 mod request;
 pub(crate) mod scan;
 mod scene;
+mod shown;
 mod source;
 mod terminal;
+pub(crate) mod view;
 
 pub(crate) use terminal::say;
 
@@ -30,6 +32,7 @@ use motion::MotionArguments;
 use recording::{DepthArguments, RecordingArguments};
 use request::RequestArguments;
 use scene::SceneArguments;
+use shown::ShownArguments;
 use std::path::PathBuf;
 
 /// Predict how to hang an object on a supporter, without training data and without a GPU.
@@ -67,6 +70,13 @@ pub(crate) enum Command {
     /// Exit status: 0 a path was found, 3 there is no path (the JSON gives the reason), 1 bad input, 2 bad usage.
     #[command(override_usage = USAGE_OF_PLAN)]
     Plan(Box<PlanArguments>),
+    /// Show a prediction that was written before: as a page for a browser, as a picture, or both.
+    ///
+    /// The object and the supporter must be those of the prediction, with the same options for scale and up axis. Candidates
+    /// that fell are shown only by predict --view.
+    ///
+    /// Exit status: 0 the page or picture was written, 1 bad input, 2 bad usage.
+    View(Box<ViewArguments>),
     /// Show the analysis of one file: size, centre of mass, and contact candidates or hanging sites.
     ///
     /// Exit status: 0 the file was read, even if it has no candidates, 1 bad input, 2 bad usage.
@@ -126,6 +136,24 @@ pub(crate) struct PlanArguments {
     recording: RecordingArguments,
 }
 
+#[derive(Args)]
+#[command(group = clap::ArgGroup::new("shown").required(true).multiple(true).args(["view", "png"]))]
+pub(crate) struct ViewArguments {
+    #[command(flatten, next_help_heading = "Object and supporter")]
+    files: FileArguments,
+    /// The prediction: the JSON that `predict --json` wrote.
+    #[arg(value_name = "PREDICTION")]
+    prediction: PathBuf,
+    #[command(flatten, next_help_heading = "Result")]
+    shown: ShownArguments,
+    #[command(flatten, next_help_heading = "Points of the supporter")]
+    cloud: CloudArguments,
+    #[command(flatten)]
+    scene: SceneArguments,
+    #[command(flatten, next_help_heading = "Depth images in place of --object or --supporter")]
+    recording: RecordingArguments,
+}
+
 /// The files of object and supporter, and how their coordinates are meant.
 #[derive(Args)]
 struct FileArguments {
@@ -169,6 +197,8 @@ struct ResultArguments {
     /// File for the result as JSON; - prints the JSON to standard output instead of the table.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    #[command(flatten)]
+    shown: ShownArguments,
     /// 1 analyses object and supporter one after the other, 2 or more in parallel.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     threads: u32,

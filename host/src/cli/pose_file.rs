@@ -42,13 +42,20 @@ pub(super) fn hanging_pose(path: &Path, rank: u32, origin: [f64; 3]) -> Result<H
             document
         }
     };
-    let entry = entry(path, chosen)?;
+    hanging_pose_of(path, chosen, origin)
+}
+
+/// The hanging pose that a value of the file at `path` gives, as an offset from `origin`.
+pub(super) fn hanging_pose_of(path: &Path, value: Value, origin: [f64; 3]) -> Result<HangingPose> {
+    let at = || path.display().to_string();
+    let entry = entry(path, value)?;
     let pose = released(&entry, origin).with_context(at)?;
     let rest = entry.rest_pose.map(|rows| rested(&rows, origin)).transpose().with_context(at)?;
     Ok(HangingPose { pose, rest: rest.map(Rest::at), matched: None })
 }
 
-fn read(path: &Path) -> Result<Value> {
+/// The JSON in a file.
+pub(super) fn read(path: &Path) -> Result<Value> {
     let at = || path.display().to_string();
     let text = std::fs::read_to_string(path)
         .with_context(|| format!("{}: cannot be read; give a readable JSON file of a pose", at()))?;

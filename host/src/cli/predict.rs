@@ -7,6 +7,7 @@ use super::motion::Way;
 use super::output::Output;
 use super::path::{self, MAX_WAYPOINTS};
 use super::planned::Planned;
+use super::shown::{Background, Outcome};
 use super::source::Source;
 use super::terminal::{self, say};
 use super::{PredictArguments, progress};
@@ -14,7 +15,7 @@ use anyhow::{Result, ensure};
 use hangpose::geometry::{Aabb, Cloud, Mesh, Point};
 use hangpose::hanging::sites::{Cost, SiteMatch};
 use hangpose::hanging::{
-    self, HangingPose, Object, Prediction, Rejection, Request, Rest, Stage, Supporter, predict,
+    self, HangingPose, Object, Prediction, Rejection, Request, Rest, Stage, Supporter, Watch, predict,
     predict_bytes, predict_many,
 };
 use hangpose::mechanics::Unseen;
@@ -23,6 +24,7 @@ use hangpose::motion::{Task, Waypoint, predict_reachable, reachable_bytes};
 use hangpose::{Monitor, Params};
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Exit status when nothing hangs.
@@ -61,14 +63,17 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
         .collect();
     let prepare = |path: Option<&Path>| path.map(|path| Output::prepare(path, &inputs)).transpose();
     let (output, path_output) = (prepare(result.json.as_deref())?, prepare(arguments.motion.path())?);
-    let is_table_shown =
-        ![&output, &path_output].into_iter().any(|output| matches!(output, Some(Output::Standard)));
+    let shown = result.shown.prepare(&inputs)?;
+    let is_standard = |output: &Option<Output>| matches!(output, Some(Output::Standard));
+    let is_table_shown = !is_standard(&output) && !is_standard(&path_output) && !shown.uses_standard_output();
 
     let mesh = object_source.object(&arguments.files)?;
     let points = supporter_source.supporter(&arguments.files, &arguments.cloud, params.seed)?;
     let cloud = input::seen(&points, &arguments.cloud)?;
     let wishes = arguments.request.read(&arguments.files, &points)?;
-    let request = &wishes.request()?;
+    let released = Mutex::new(Vec::new());
+    let watch = |pose: &_, fate| released.lock().unwrap_or_else(PoisonError::into_inner).push((*pose, fate));
+    let request = &Request { watch: result.shown.has_page().then_some(Watch(&watch)), ..wishes.request()? };
     let way = arguments.plan.then(|| arguments.motion.read(points.origin)).transpose()?;
     let motion = way.as_ref().map(Way::motion).transpose()?;
     let (cloud, params) = (&cloud, &params);
@@ -132,7 +137,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
             None => say("note", "--path: no file was written, because there is no path"),
         }
     }
-    if let Some(output) = output {
+    if output.is_some() || !shown.is_empty() {
         let document = json::Prediction {
             schema: json::SCHEMA,
             count,
@@ -163,7 +168,26 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
             },
             params,
         };
-        output.write(json::text_in_frame(&document, points.origin))?;
+        if !shown.is_empty() {
+            let background = Background {
+                names: [object_source.name(), supporter_source.name()],
+                shapes: (mesh, cloud),
+                models: (&object, &supporter),
+                request,
+                params,
+                gripper: motion.and_then(|motion| motion.gripper),
+            };
+            let released = released.lock().unwrap_or_else(PoisonError::into_inner);
+            let outcome = Outcome {
+                released: &released,
+                counts: found.counts.as_ref(),
+                rejection: found.rejection.as_ref(),
+            };
+            shown.write(&background, &found.poses, json::values(&document.poses), &outcome)?;
+        }
+        if let Some(output) = output {
+            output.write(json::text_in_frame(&document, points.origin))?;
+        }
     }
     if is_table_shown {
         terminal::print(&text)?;

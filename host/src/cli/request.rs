@@ -212,6 +212,7 @@ impl Wishes {
             hung: &[],
             distinct: self.distinct,
             symmetries: None,
+            watch: None,
         };
         match request.validate() {
             Ok(()) => Ok(request),

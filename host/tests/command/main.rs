@@ -11,6 +11,7 @@ mod placement;
 mod planning;
 mod shapes;
 mod usage;
+mod view;
 
 #[path = "../images/mod.rs"]
 mod images;

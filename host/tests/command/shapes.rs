@@ -19,13 +19,18 @@ pub(crate) const PEG_RADIUS: f64 = 0.004;
 /// Length of the peg.
 pub(crate) const PEG_LENGTH: f64 = 0.1;
 
-/// A ring and a box below it, as two closed bodies.
-pub(crate) fn weighted_ring() -> Mesh {
-    let (mut vertices, mut triangles) = grid(96, 24, |u, v| {
+/// The ring, of `2 rows columns` triangles.
+pub(crate) fn torus(rows: usize, columns: usize) -> Mesh {
+    grid(rows, columns, |u, v| {
         let (u, v) = (TAU * u, TAU * v);
         let r = RING_RADIUS + WIRE_RADIUS * v.cos();
         [r * u.cos(), WIRE_RADIUS * v.sin(), r * u.sin()]
-    });
+    })
+}
+
+/// A ring and a box below it, as two closed bodies.
+pub(crate) fn weighted_ring() -> Mesh {
+    let (mut vertices, mut triangles) = torus(96, 24);
     let first = vertices.len();
     for i in 0..8 {
         let side = |axis: usize| if i >> axis & 1 == 1 { WEIGHT[axis] } else { -WEIGHT[axis] };

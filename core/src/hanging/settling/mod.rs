@@ -11,6 +11,7 @@ use super::error::PredictError;
 use super::pose::HangingPose;
 use super::request::{Distance, Request};
 use super::scene::Scene;
+use super::watch::Watch;
 use crate::best::Best;
 use crate::geometry::{Pose, Symmetry};
 use crate::mechanics::{
@@ -171,6 +172,9 @@ impl<'a> Settling<'a> {
             Fate::RotatesOff => self.counts.rotated_off += 1,
             Fate::SlidesOff => self.counts.slid_off += 1,
             Fate::Moves => self.counts.moving += 1,
+        }
+        if let Some(Watch(watch)) = self.request.watch {
+            watch(&start.pose, settled.fate);
         }
         if settled.fate != Fate::Rests {
             return Ok(false);
