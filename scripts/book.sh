@@ -26,8 +26,10 @@ fi
 
 python scripts/book/figures.py --check &
 figures=$!
-python scripts/book/check.py
-wait "$figures"
+python scripts/book/check.py &
+check=$!
+copy=$(mktemp -d)
+trap 'rm -rf "$copy"; kill "$figures" "$check" 2>/dev/null || true' EXIT
 
 # The pages link to source files of the repository: these are copied beside them.
 rm -rf build/book
@@ -40,11 +42,11 @@ fi
     while read -r file; do if [ -f "$file" ]; then cp --parents "$file" build/book/; fi; done
 
 # linkchecker gives up the rights of root, and may not be allowed to read here.
-copy=$(mktemp -d)
-trap 'rm -rf "$copy"' EXIT
 cp -r build/book "$copy/"
 chmod -R a+rX "$copy"
 printf '[AnchorCheck]\n' >"$copy/config"
 linkchecker --config "$copy/config" --no-status --recursion-level=-1 "$copy/book/docs/index.html" >"$copy/links" 2>&1 ||
     { cat "$copy/links" >&2; exit 1; }
+wait "$check"
+wait "$figures"
 echo "book: build/book/docs/index.html, all links lead somewhere"
