@@ -39,7 +39,9 @@ if grep -E "WARN|ERROR" <<<"$log"; then
     exit 1
 fi
 { grep -rhoE '\]\((\.\./)+[^)#: ]+' docs/*.md docs/book/*.md || true; } | sed -E 's/\]\((\.\.\/)+//' | sort -u |
-    while read -r file; do if [ -f "$file" ]; then cp --parents "$file" build/book/; fi; done
+    while read -r path; do
+        if [ -e "$path" ]; then git ls-files --cached --others --exclude-standard -- "$path" | xargs cp --parents -t build/book; fi
+    done
 
 # linkchecker gives up the rights of root, and may not be allowed to read here.
 cp -r build/book "$copy/"
