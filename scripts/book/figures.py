@@ -371,7 +371,7 @@ def published():
         curve("similar_radius", [0, 0.01, 0.05, 0.1, 0.2], of_mug("sites"), "sites", 0.1),
         curve("similar_direction", [0, 0.5, 0.9, 0.99], of_mug("sites"), "sites", 0.9),
         curve("supporter_contact_cosine", [0, 0.5, 0.8, 0.95, 1], of_tree, "contact points", 0.8),
-        curve("supporter_directions", [1, 3, 10, 20], radius, mm, 20),
+        curve("supporter_directions", [1, 3, 20], radius, mm, 20),
         curve("slice_half_thickness", [0.0005, 0.001, 0.002, 0.004], radius, mm, 0.002),
         curve("slice_link_distance", [0.001, 0.004, 0.006, 0.01], radius, mm, 0.006),
         curve("radius_ratio", [0, 0.5, 1], matched("fitting"), "pairs that fit", 1),
@@ -395,7 +395,7 @@ def own():
         return len(predict("mug.obj", "mug_tree.obj", params=params)["poses"])
 
     def count_tight(params):
-        return len(predict("mug.obj", "hook.ply", params=f"{params}\nclearance = 0.0005")["poses"])
+        return len(predict("mug.obj", "hook.ply", params=f"{params}\nclearance = 0.0005\nsettle_attempts = 20")["poses"])
 
     def memory(params):
         return predict("mug.obj", "hook.ply", params=params)["stats"]["memory_bytes"]["object"] / 1e6
