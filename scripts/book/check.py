@@ -4,7 +4,7 @@
   a line `...` stands for any lines. `<!-- exit 3 -->` before the block is the status of its last command. A block after
   `<!-- not run: reason -->` does not run; its subcommands and options must exist. Every `make` target must exist.
 - Files: a block after `<!-- file: name -->` is written to this file, for the commands of the same page.
-- Python: every block runs, with build/python if the repository has a module.
+- Python: every block runs; those that import hangpose run with build/python, which scripts/python.sh makes.
 - C and C++: a block that is not an include must be a part of a file in examples-c/, or several, with `// ...` between.
 - JSON: the page on it names every field of a prediction.
 - Parameters: the columns of tables `| Parameter |` are the ranges and defaults of the program.
@@ -131,8 +131,11 @@ def check_python(page, folder):
         if language != "python" or any(comment.startswith("not run: ") for comment in comments):
             continue
         counts["Python"] += 1
-        if (ROOT / "python").exists():
-            run = subprocess.run([PYTHON, "-c", text], cwd=folder, capture_output=True, text=True, check=False)
+        interpreter = PYTHON if "import hangpose" in text else sys.executable
+        if not Path(interpreter).exists():
+            problem(page, line, f"{interpreter} is missing; run scripts/python.sh")
+        else:
+            run = subprocess.run([interpreter, "-c", text], cwd=folder, capture_output=True, text=True, check=False)
             if run.returncode:
                 problem(page, line, f"this Python fails:\n{run.stderr}")
 
