@@ -46,7 +46,7 @@ fi
 # linkchecker gives up the rights of root, and may not be allowed to read here.
 cp -r build/book "$copy/"
 chmod -R a+rX "$copy"
-printf '[AnchorCheck]\n' >"$copy/config"
+printf '[AnchorCheck]\n[filtering]\ninternlinks=^file:\nignorewarnings=file-missing-slash\n' >"$copy/config"
 linkchecker --config "$copy/config" --no-status --recursion-level=-1 "$copy/book/docs/index.html" >"$copy/links" 2>&1 ||
     { cat "$copy/links" >&2; exit 1; }
 wait "$check"
