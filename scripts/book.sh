@@ -40,7 +40,8 @@ if grep -E "WARN|ERROR" <<<"$log"; then
 fi
 { grep -rhoE '\]\((\.\./)+[^)#: ]+' docs/*.md docs/book/*.md || true; } | sed -E 's/\]\((\.\.\/)+//' | sort -u |
     while read -r path; do
-        if [ -e "$path" ]; then git ls-files --cached --others --exclude-standard -- "$path" | xargs cp --parents -t build/book; fi
+        test -e "$path" || continue
+        git ls-files --cached --others --exclude-standard -- "$path" | xargs cp --parents -t build/book
     done
 
 # linkchecker gives up the rights of root, and may not be allowed to read here.

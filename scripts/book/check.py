@@ -91,7 +91,10 @@ def check_words(page, line, words):
 
 def matches(expected, printed):
     parts = [re.escape(part.strip("\n")) for part in re.split(r"^\.\.\.$", expected.strip("\n"), flags=re.MULTILINE)]
-    return re.fullmatch(r"(?:.*\n)*?".join(part + r"\n?" if part else "" for part in parts), printed.strip("\n") + "\n") is not None
+    return (
+        re.fullmatch(r"(?:.*\n)*?".join(part + r"\n?" if part else "" for part in parts), printed.strip("\n") + "\n")
+        is not None
+    )
 
 
 def check_shell(page, folder):
@@ -118,7 +121,12 @@ def check_shell(page, folder):
             counts["run" if is_run else "only read"] += 1
             if is_run:
                 run = subprocess.run(
-                    [PROGRAM, *words[1:]], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False
+                    [PROGRAM, *words[1:]],
+                    cwd=folder,
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.STDOUT,
+                    text=True,
+                    check=False,
                 )
                 printed, last = printed + run.stdout, run.returncode
         if is_run and last != status:
@@ -156,7 +164,11 @@ def check_excerpts(page):
 def defaults(profile):
     files = ("--object", "samples/mug.obj", "--supporter", "samples/hook.ply", "--top", "1")
     run = subprocess.run(
-        [PROGRAM, "predict", *files, "--profile", profile, "--json", "-"], cwd=ROOT, capture_output=True, text=True, check=True
+        [PROGRAM, "predict", *files, "--profile", profile, "--json", "-"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
     )
     return json.loads(run.stdout)["params"]
 
@@ -177,7 +189,7 @@ def range_of(parameter):
 
 def same(shown, value):
     shown = shown.strip("`")
-    if isinstance(value, bool) or isinstance(value, str):
+    if isinstance(value, bool | str):
         return shown == str(value).lower()
     if isinstance(value, list):
         return [float(x) for x in shown.strip("[]").split(",")] == value
@@ -203,7 +215,11 @@ def check_parameters(page):
                 continue
             for profile, value in (("paper", paper), ("default", default)):
                 if not same(value, defaults(profile)[parameter]):
-                    problem(page, line, f"{parameter} is {defaults(profile)[parameter]} in the profile {profile}, not {value}")
+                    problem(
+                        page,
+                        line,
+                        f"{parameter} is {defaults(profile)[parameter]} in the profile {profile}, not {value}",
+                    )
             limits = re.fullmatch(r"(\S+) to (.+)", shown)
             limits = limits and tuple(float(limit.replace(" ", "")) for limit in limits.groups())
             if limits != range_of(parameter):
@@ -227,7 +243,9 @@ def check_json():
     """That the page on the JSON names every field."""
     page = ROOT / "docs" / "book" / "json.md"
     files = ("--object", "samples/mug.obj", "--supporter", "samples/hook.ply", "--top", "1", "--plan")
-    run = subprocess.run([PROGRAM, "predict", *files, "--json", "-"], cwd=ROOT, capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [PROGRAM, "predict", *files, "--json", "-"], cwd=ROOT, capture_output=True, text=True, check=True
+    )
     text = page.read_text()
     for key in sorted(set(keys_of(json.loads(run.stdout)))):
         if f'"{key}"' not in text:

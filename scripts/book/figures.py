@@ -1,7 +1,7 @@
 """Draws the figures of the book that show results of the program on the samples, and the meaning of the parameters.
 
-    figures.py           writes docs/figures/how_*.svg and docs/figures/params_*.svg
-    figures.py --check   fails if one of them would change
+figures.py           writes docs/figures/how_*.svg and docs/figures/params_*.svg
+figures.py --check   fails if one of them would change
 """
 
 import io
@@ -32,7 +32,9 @@ def picture(panels, columns=None, width=2.4, height=2.2):
     """A figure with one plot for each panel, a function that draws on it."""
     columns = columns or len(panels)
     rows = -(-len(panels) // columns)
-    figure, axes = plt.subplots(rows, columns, figsize=(width * columns, height * rows), layout="constrained", squeeze=False)
+    figure, axes = plt.subplots(
+        rows, columns, figsize=(width * columns, height * rows), layout="constrained", squeeze=False
+    )
     for axis, draw in zip(axes.flat, panels, strict=False):
         draw(axis)
     for axis in axes.flat[len(panels) :]:
@@ -57,7 +59,9 @@ def scene(axis, title, low, high):
 
 
 def arrow(axis, start, end, colour, width=1.2):
-    axis.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "color": colour, "lw": width, "shrinkA": 0, "shrinkB": 0})
+    axis.annotate(
+        "", end, start, arrowprops={"arrowstyle": "-|>", "color": colour, "lw": width, "shrinkA": 0, "shrinkB": 0}
+    )
 
 
 def note(axis, at, text, colour="black", **options):
@@ -121,7 +125,9 @@ def margin():
         def panel(axis):
             tilts = np.degrees(best["margin"]["tilts"])
             for i, tilt in enumerate(tilts):
-                axis.add_patch(Wedge((0, 0), tilt, 45 * i - 20, 45 * i + 20, color=GOOD if tilt > 68 else POINT, alpha=0.8))
+                axis.add_patch(
+                    Wedge((0, 0), tilt, 45 * i - 20, 45 * i + 20, color=GOOD if tilt > 68 else POINT, alpha=0.8)
+                )
                 at = np.array([np.cos(np.pi / 4 * i), np.sin(np.pi / 4 * i)]) * (tilt + 10)
                 note(axis, at, f"{tilt:.0f}°")
             for radius in (21.8, 68.8):
@@ -130,7 +136,9 @@ def margin():
 
         return panel
 
-    return picture([draw("hook.ply", "mug on the hook"), draw("mug_tree.obj", "mug on the mug tree")], width=2.6, height=2.7)
+    return picture(
+        [draw("hook.ply", "mug on the hook"), draw("mug_tree.obj", "mug on the mug tree")], width=2.6, height=2.7
+    )
 
 
 def path():
@@ -395,16 +403,22 @@ def own():
         return len(predict("mug.obj", "mug_tree.obj", params=params)["poses"])
 
     def count_tight(params):
-        return len(predict("mug.obj", "hook.ply", params=f"{params}\nclearance = 0.0005\nsettle_attempts = 20")["poses"])
+        return len(
+            predict("mug.obj", "hook.ply", params=f"{params}\nclearance = 0.0005\nsettle_attempts = 20")["poses"]
+        )
 
     def memory(params):
         return predict("mug.obj", "hook.ply", params=params)["stats"]["memory_bytes"]["object"] / 1e6
 
-    tilt = best(lambda pose: np.degrees(min(pose["margin"]["tilts"])), "mug_tree.obj")
+    least_tilt = best(lambda pose: np.degrees(min(pose["margin"]["tilts"])), "mug_tree.obj")
+
+    def tilt(params):
+        return least_tilt(f"{params}\nsettle_attempts = 4")
+
     tolerance = best(lambda pose: pose["tolerance"]["position"] * MM)
     sinking = best(lambda pose: pose["sinking"] * MM)
     return picture([
-        curve("friction", [0, 0.1, 0.2, 0.4, 0.8], lambda p: tilt(f"{p}\nsettle_attempts = 4"), "least tilt, degrees", 0.4),
+        curve("friction", [0, 0.1, 0.2, 0.4, 0.8], tilt, "least tilt, degrees", 0.4),
         curve("clearance", [0.001, 0.002, 0.004, 0.008], tolerance, "tolerance, mm", 0.001),
         curve("time_step", [0.001, 0.002, 0.004, 0.005], sinking, "sinking, mm", 0.004),
         curve("settle_time", [0.1, 0.5, 1, 3], released("mug_tree.obj"), "releases needed", 3),
@@ -440,7 +454,9 @@ def main():
             elif not is_check:
                 file.write_text(drawn)
     if stale:
-        raise SystemExit(f"figures: not what the program draws now: {', '.join(stale)}; run scripts/book.sh --figures and commit them")
+        raise SystemExit(
+            f"figures: {', '.join(stale)}: not what the program draws; run scripts/book.sh --figures and commit"
+        )
 
 
 if __name__ == "__main__":
