@@ -54,7 +54,7 @@ class Mesh:
 
 
 def section(corners, axis, height):
-    """The segments in which triangles cut the plane where the coordinate `axis` is `height`, without that coordinate."""
+    """The segments in which triangles cut the plane where the coordinate `axis` is `height`, without it."""
     others = [i for i in range(3) if i != axis]
     above = corners[:, :, axis] > height
     segments = []
