@@ -9,6 +9,7 @@
 - JSON: the page on it names every field of a prediction.
 - Parameters: the columns of tables `| Parameter |` are the ranges and defaults of the program.
 - Figures: `<!-- cites file: rows -->` names rows of a table that a command prints; the file must still have them.
+- Names: "`name` in [file](file)" is true.
 - Links between files, and to headings, lead somewhere.
 """
 
@@ -32,7 +33,7 @@ RUN = [ROOT / "README.md", *sorted((ROOT / "docs" / "book").glob("*.md"))]
 PYTHON = ROOT / "build" / "python" / "bin" / "python"
 
 problems = []
-counts = {"run": 0, "only read": 0, "Python": 0, "C and C++": 0, "parameters": 0, "cited rows": 0, "links": 0}
+counts = {"run": 0, "only read": 0, "Python": 0, "C and C++": 0, "parameters": 0, "cited rows": 0, "names in files": 0, "links": 0}
 
 
 def problem(page, line, text):
@@ -292,6 +293,15 @@ def check_links(page):
                 problem(page, token.map[0] + 1, f"{path} has no heading #{anchor}")
 
 
+def check_named(page):
+    """That a file has the function or constant that a page says is in it."""
+    for line, text in enumerate(page.read_text().splitlines(), 1):
+        for name, path in re.findall(r"`([\w:]+)` in \[[^\]]+\]\(([^)]+\.rs)\)", text):
+            counts["names in files"] += 1
+            if not re.search(rf"\b{name.split('::')[-1]}\b", (page.parent / path).read_text()):
+                problem(page, line, f"{path} has no {name}")
+
+
 def main():
     named = set()
     for page in RUN:
@@ -302,6 +312,7 @@ def main():
         check_excerpts(page)
         named |= check_parameters(page)
         check_cited(page)
+        check_named(page)
     for missing in sorted(set(defaults("paper")) - named):
         problems.append(f"docs/book: no table of parameters has {missing}")
     check_json()
