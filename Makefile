@@ -1,10 +1,11 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo picture test bench tables meant reach calibrate peer lib command build_command install deb dist abi \
+.PHONY: help setup demo picture test test_rust test_c book bench tables meant reach calibrate peer lib command build_command install deb dist abi \
 	samples header clean
 
 help:
 	@echo "make demo     predict how the sample mug hangs on the sample hook, plan a path, simulate it and draw it"
 	@echo "make picture  make the pictures of the README anew: docs/demo.png and docs/hang.gif"
+	@echo "make book     build the book in build/book and check all that it says"
 	@echo "make test     run all checks and tests"
 	@echo "make bench    measure time and memory"
 	@echo "make peer     compare time and poses with another implementation: PEER=peer.py [MESHES=folder]"
@@ -37,17 +38,30 @@ picture: demo
 	cargo run --release -p host-tests --bin drop -- --object samples/mug.obj --supporter samples/hook.obj --poses build/demo.json \
 		--picture docs/demo.png --film docs/hang.gif
 
+# Two lanes for two processors. The book comes last: its commands are those of the lanes, and its Python the module.
 test: setup
+	$(MAKE) --no-print-directory --jobs=2 --output-sync=target test_rust test_c
+	scripts/slurm_test.sh
+	scripts/python.sh
+	scripts/book.sh
+
+test_rust:
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
 	cargo run -p host-tests --example samples -- --check
 	cargo run -p hangpose-ffi --example header -- --check
+
+test_c:
 	scripts/bare-metal.sh
 	scripts/link.sh
 	scripts/colcon.sh
 	scripts/packages.sh
+	scripts/viewer.sh
+
+book: setup
+	scripts/book.sh
 
 bench: setup
 	cargo bench --workspace

@@ -48,6 +48,7 @@ int main(int count, char **arguments) {
   const auto hook = hangpose::supporter::create({points, normals}, params);
   if (!hook) return fail(hook.error());
 
+  // ANCHOR: plan
   // Two fingers on the cup, which open by 15 mm each, and the palm behind it. The hand leaves away from the
   // handle.
   const hangpose::capsule hand[3] = {
@@ -65,6 +66,7 @@ int main(int count, char **arguments) {
   std::vector<hangpose::waypoint> waypoints(1000);
   const auto found = hangpose::predict_reachable(*mug, *hook, hangpose::request(), params, motion, poses,
                                                  failures, waypoints);
+  // ANCHOR_END: plan
   if (!found) return fail(found.error());
   if (found->status == HANGPOSE_REJECTED) {
     std::printf("nothing hangs: %s\n", found->prediction.reason());

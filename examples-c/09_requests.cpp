@@ -42,6 +42,7 @@ int main(int count, char **arguments) {
   const auto tree = hangpose::supporter::create({points, normals}, params);
   if (!tree) return fail(tree.error());
 
+  // ANCHOR: request
   // What stands around and hangs already must outlive the request, which points to it.
   const std::vector<hangpose::vec3> scene = wall(), here{{0.06f, 0.0f, 0.165f}};
   hangpose::request request;
@@ -52,6 +53,7 @@ int main(int count, char **arguments) {
   request.on = hangpose::region::around(here, 0.03f);
   hangpose::pose best[1];
   const auto first = hangpose::predict(*mug, *tree, request, params, best);
+  // ANCHOR_END: request
   if (!first) return fail(first.error());
   if (first->status == HANGPOSE_REJECTED) {
     std::printf("nothing hangs here: %s\n", first->reason());

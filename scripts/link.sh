@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds and installs the C library and links it from outside the tree in every way that the README describes: through
-# CMake and pkg-config, static and shared, with gcc and clang, from the Debian packages, and built from source. The
+# Builds and installs the C library and links it from outside the tree in every way that docs/book/build.md describes:
+# through CMake and pkg-config, static and shared, with gcc and clang, from the Debian packages, and built from source. The
 # command and its packages are tested with it, because the same files install them.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)

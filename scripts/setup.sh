@@ -56,6 +56,9 @@ has_daemon() { command -v "$1" >/dev/null || [ -x "/usr/sbin/$1" ]; }
 { has_daemon slurmctld && has_daemon slurmd && command -v sbatch >/dev/null; } || missing+=(slurm-wlm)
 has_daemon munged || missing+=(munge)
 
+# The virtual environments of Python, for the tools of the book and of the comparisons.
+python3 -c 'import ensurepip' 2>/dev/null || missing+=(python3-venv)
+
 if command -v rustup >/dev/null; then
     have=$(rustup component list --installed)
     for component in rustfmt clippy; do

@@ -31,7 +31,7 @@ pub use scan::{
     suggested_voxel,
 };
 
-/// Compiles the Rust code of the README.
+/// Compiles the Rust code of the book.
 #[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-struct Readme;
+#[doc = include_str!("../../docs/book/rust.md")]
+struct Book;
