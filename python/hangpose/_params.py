@@ -6,6 +6,8 @@ import os
 import sys
 from typing import Any, Iterator, Mapping, Union
 
+import numpy as np
+
 from . import _hangpose
 from .errors import InvalidInput, UnreadableFile
 
@@ -14,19 +16,19 @@ class Params(Mapping[str, Any]):
     """All constants. ``Params()`` is the default profile and ``Params("paper")`` the published method; keyword arguments
     change single constants, and ``file`` is a TOML file of changes.
 
-    >>> Params(clearance=0.002)["clearance"] == 0.002
-    True
+    >>> Params(clearance=0.002)["clearance"]
+    0.002
     """
 
     def __init__(self, profile: str = "default", *, file: str | os.PathLike[str] | None = None, **changes: Any) -> None:
         read = {} if file is None else _read(file)
         self._values = _hangpose.params(profile, {**read, **changes})
-        self._given = {**read, **changes}
+        self._profile, self._given = profile, {**read, **changes}
 
     def __getitem__(self, name: str) -> Any:
         value = self._values[name]
-        # Single precision; what was given is what is meant.
-        return self._given.get(name, value) if isinstance(value, float) else value
+        # Single precision, in the shortest form that is the same number.
+        return float(str(np.float32(value))) if isinstance(value, float) else value
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._values)
@@ -35,7 +37,8 @@ class Params(Mapping[str, Any]):
         return len(self._values)
 
     def __repr__(self) -> str:
-        return f"Params({', '.join(f'{name}={value!r}' for name, value in self._given.items())})"
+        parts = [repr(self._profile)] if self._profile != "default" else []
+        return f"Params({', '.join(parts + [f'{name}={value!r}' for name, value in self._given.items()])})"
 
 
 ParamsLike = Union[Params, Mapping[str, Any], str, None]

@@ -29,22 +29,31 @@ class Placement:
 
     @staticmethod
     def of(value: Any, name: str = "pose") -> Placement:
-        """A placement from a 4 x 4 matrix, from a position and a quaternion x, y, z, w, or from a placement."""
+        """A placement from a 4 x 4 matrix, from a position and a quaternion x, y, z, w, from a placement, or of an object that
+        hangs at a pose."""
         if isinstance(value, Placement):
             return value
+        if isinstance(value, Pose):
+            return value.rest_placement or value.release_placement
         if isinstance(value, tuple) and len(value) == 2:
             position, quaternion = (np.asarray(part, dtype=np.float64) for part in value)
             if position.shape != (3,) or quaternion.shape != (4,) or abs(np.linalg.norm(quaternion) - 1) > 1e-3:
                 raise InvalidInput(f"{name} needs a position and a unit quaternion x, y, z, w", field=name)
+            quaternion = quaternion / np.linalg.norm(quaternion)
             return Placement(position, quaternion, _matrix(position, quaternion))
         matrix = np.asarray(value, dtype=np.float64)
-        if matrix.shape != (4, 4) or np.abs(matrix[:3, :3] @ matrix[:3, :3].T - np.eye(3)).max() > 1e-3:
+        is_pose = matrix.shape == (4, 4) and np.array_equal(matrix[3], (0, 0, 0, 1)) and np.isfinite(matrix).all()
+        if not is_pose or not _is_rotation(matrix[:3, :3]):
             raise InvalidInput(f"{name} needs a 4 x 4 matrix of a rotation and a position", field=name)
         return Placement(matrix[:3, 3].copy(), _quaternion(matrix[:3, :3]), matrix.copy())
 
 
+def _is_rotation(matrix: Matrix) -> bool:
+    return bool(np.abs(matrix @ matrix.T - np.eye(3)).max() < 1e-3 and np.linalg.det(matrix) > 0)
+
+
 def _matrix(position: Matrix, quaternion: Matrix) -> Matrix:
-    x, y, z, w = quaternion / np.linalg.norm(quaternion)
+    x, y, z, w = quaternion
     matrix = np.eye(4)
     matrix[:3, :3] = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
@@ -183,7 +192,7 @@ class Prediction:
     stopped: str | None
     """``"work_limit"`` if the work limit ended the search; the poses are the best found until then."""
     counts: dict[str, int]
-    """Candidates that were released, and what became of them."""
+    """Candidates that were released, and what became of them: ``settling`` in the JSON of the command."""
     object: Object | None = field(repr=False)
     """``None`` in a prediction that was pickled."""
     supporter: Supporter | None = field(repr=False)

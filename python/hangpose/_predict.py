@@ -9,7 +9,7 @@ from typing import Any, Callable, Iterable, Sequence
 import numpy as np
 
 from . import _hangpose
-from ._arrays import box, rows, vector
+from ._arrays import box, numbers, rows, vector
 from ._poses import Contact, Margin, Matrix, Path, Placement, Pose, Prediction, Rejection, Tolerance, Unseen
 from ._shapes import Object, Progress, Supporter
 from .errors import InvalidInput, NoPath
@@ -37,6 +37,10 @@ class Gripper:
     """The opened gripper leaves this way if it is free, object coordinates, metres."""
 
 
+_MOST_POSES = 10_000
+"""Largest number of poses of a prediction."""
+
+
 def predict(
     object: Object,
     supporter: Supporter,
@@ -61,7 +65,7 @@ def predict(
     """Predicts poses in which the object hangs, best first.
 
     Args:
-        top: Largest number of poses.
+        top: Largest number of poses, 1 to 10000.
         allow: Kinds that are given at all: ``"threaded"``, ``"hooked"``, ``"capped"``, ``"balanced"``.
         prefer: Kinds that come first; threaded and hooked by default.
         here: Point or points of the supporter at which the object hangs, within ``here_radius`` metres.
@@ -69,7 +73,7 @@ def predict(
         approach: Direction of a free straight way to the release pose, at most ``approach_angle`` radians off it, of
             ``approach_length`` metres.
         scene: Points of things near the supporter that the object does not touch, shape (n, 3).
-        hung: Objects that hang already, with their poses.
+        hung: Objects that hang already, each with its :class:`Pose` or a 4 x 4 matrix.
         distinct: How much two poses of a kind differ at least, metres and radians.
         work_limit: Largest number of rays and distance queries.
         progress: Called with the share that is done, 0 to 1, while the call runs.
@@ -81,8 +85,8 @@ def predict(
         supporter, allow, prefer, here, here_radius, by, by_radius, by_box, approach, approach_angle, approach_length,
         scene, hung, distinct,
     )  # fmt: skip
-    if top < 1:
-        raise InvalidInput(f"top is {top}: give 1 or more", field="top", value=top, minimum=1)
+    if not 1 <= top <= _MOST_POSES:
+        raise InvalidInput(f"top is {top}: give 1 to {_MOST_POSES}", field="top", value=top, minimum=1, maximum=_MOST_POSES)
     summary, native = _hangpose.predict(
         object._native, supporter._native, wishes, others, points, int(top), work_limit, progress
     )
@@ -160,10 +164,19 @@ def plan(
     )  # fmt: skip
     failure = answer.get("failure")
     if failure is not None:
-        raise NoPath(failure["message"], reason=failure["reason"], collision=failure["collision"])
+        message, collision = failure["message"], failure["collision"]
+        if collision is not None and origin.any():
+            at = np.array(collision["at"]) + origin
+            message = message.replace(_written(collision["at"]), _written(at))
+            collision = {**collision, "at": at.tolist()}
+        raise NoPath(message, reason=failure["reason"], collision=collision)
     found = answer["path"]
     (seconds, poses), (later, away) = (_waypoints(found[name], origin) for name in ("object", "gripper"))
     return Path(seconds, poses, found["release"], later, away, found["clearance"], found)
+
+
+def _written(at: Iterable[float]) -> str:
+    return f"({', '.join(f'{x:.3f}' for x in at)})"
 
 
 def _check(object: Object, supporter: Supporter) -> None:
@@ -200,7 +213,7 @@ def _wishes(
     wishes = {
         "allow": _kinds(allow, "allow"),
         "prefer": _kinds(prefer, "prefer"),
-        "here": None if here is None else rows(np.atleast_2d(here) - origin, "here").tolist(),
+        "here": None if here is None else rows(np.atleast_2d(numbers(here, "here")) - origin, "here").tolist(),
         "here_radius": here_radius,
         "by": None if by is None else rows(np.atleast_2d(by), "by").tolist(),
         "by_radius": by_radius,
@@ -211,9 +224,7 @@ def _wishes(
         "hung": [_placed(Placement.of(pose, "hung"), origin) for _, pose in hung],
         "distinct": distinct,
     }
-    points = rows([] if scene is None else scene, "scene")
-    if origin.any() and len(points):
-        points = rows(np.asarray(scene, dtype=np.float64) - origin, "scene")
+    points = rows([], "scene") if scene is None else rows(numbers(scene, "scene") - origin, "scene")
     return wishes, [other._native for other, _ in hung], points
 
 

@@ -3,25 +3,37 @@
 from __future__ import annotations
 
 import os
+import warnings
 from typing import Any, Callable
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _hangpose
-from ._arrays import box, rows, triangles as indices, vector
+from ._arrays import box, numbers, origin, rows, triangles as indices, vector
 from ._params import ParamsLike, resolve
 from .errors import InvalidInput
 
 Progress = Callable[[float], object]
 
-_AXES = {"x": 0, "y": 1, "z": 2}
+_AXES = ("x", "y", "z")
+_PLAUSIBLE = (0.005, 5.0)
+"""Least and greatest plausible extent of an object or a supporter, metres."""
+
+
+def _warn_of_size(points: npt.NDArray[np.float32], what: str) -> None:
+    size = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
+    least, greatest = _PLAUSIBLE
+    if np.isfinite(size) and not least <= size <= greatest:
+        unit = "millimetres, pass scale=0.001" if size > greatest else "kilometres, pass scale=1000"
+        text = f"the {what} is {size:.3g} m large, but {least} to {greatest:g} m is plausible; if its unit is {unit}"
+        warnings.warn(text, stacklevel=3)
 
 
 def _turn(array: npt.NDArray[np.float32], up: str) -> npt.NDArray[np.float32]:
     """Turns coordinates by the smallest angle that maps an axis to z."""
     sign = -1 if up.startswith("-") else 1
-    axis = up.lstrip("+-").lower()
+    axis = up.lower().removeprefix("+").removeprefix("-")
     if axis not in _AXES:
         raise InvalidInput(f"up is {up!r}: give x, y, z, -x, -y or -z", field="up")
     x, y, z = array.T
@@ -30,6 +42,8 @@ def _turn(array: npt.NDArray[np.float32], up: str) -> npt.NDArray[np.float32]:
 
 
 def _placed(array: npt.NDArray[np.float32], scale: float, up: str) -> npt.NDArray[np.float32]:
+    if not (np.isfinite(scale) and scale > 0):
+        raise InvalidInput(f"scale is {scale}: give a positive number, as 0.001 for millimetres", field="scale", value=scale)
     if scale != 1.0:
         array = (array * np.float32(scale)).astype(np.float32, copy=False)
     return array if up == "z" else _turn(array, up)
@@ -66,14 +80,16 @@ class Object:
         mesh: A path (obj, stl, ply, glb, gltf), a mesh of trimesh or Open3D, or an array of vertices.
         triangles: Vertex indices of the triangles, if ``mesh`` is an array of vertices.
         params: A :class:`Params`, the name of a profile, or a mapping of changes. The supporter needs the same.
-        viewpoints: Positions of the cameras that saw the object, object frame.
+        viewpoints: Positions of the cameras that saw the object, object frame, metres, after ``scale`` and ``up``; by
+            default what the file says.
         centre_of_mass: In the object frame, metres, after ``scale`` and ``up``; by default the centroid of the volume.
         scale: Factor to metres.
         up: Axis that becomes z: x, y, z, -x, -y or -z.
         progress: Called with the share that is done, 0 to 1.
         name: What the page calls it; by default the name of the file.
 
-    Arrays of ``float32`` and ``uint32`` that are contiguous are analysed without a copy; one copy is kept for the page.
+    Arrays may be of any numeric type and layout. One copy is made, so that other threads may write to them meanwhile.
+    Vertices are not merged: a mesh whose triangles share none is open, and its centre of mass that of its surface.
     """
 
     def __init__(
@@ -95,7 +111,8 @@ class Object:
         elif _is_path(mesh):
             read = _hangpose.read_mesh(mesh)
             vertices, triangles = read["vertices"], read["triangles"]
-            viewpoints = read["viewpoints"] if viewpoints is None else viewpoints
+            if viewpoints is None:
+                viewpoints = _placed(read["viewpoints"], scale, up)
             self.notes = read["notes"]
             name = name or os.path.basename(os.fspath(mesh))
         else:
@@ -111,13 +128,15 @@ class Object:
             constants = {**constants, "centre_of_mass": {"given": vector(centre_of_mass, "centre_of_mass")}}
         self.name = name or "object"
         self._shared = {**constants, "centre_of_mass": None}
+        placed = _placed(rows(vertices, "vertices"), scale, up)
         self._native = _hangpose.NativeObject(
-            _placed(rows(vertices, "vertices"), scale, up),
+            placed,
             indices(triangles, "triangles"),
-            _placed(rows([] if viewpoints is None else viewpoints, "viewpoints"), scale, up),
+            rows([] if viewpoints is None else viewpoints, "viewpoints"),
             constants,
             progress,
         )
+        _warn_of_size(placed, "object")
 
     @property
     def centre_of_mass(self) -> npt.NDArray[np.float64]:
@@ -143,6 +162,10 @@ class Object:
         return f"<Object {self.name!r}: {self._native.triangle_count} triangles, {len(self.places)} places to hang by>"
 
 
+_SAMPLES = (100, 500_000)
+"""Least and greatest number of points to which a mesh is sampled."""
+
+
 class Supporter:
     """A supporter, analysed: points and the places on which something may hang.
 
@@ -152,10 +175,14 @@ class Supporter:
         normals: Normals of the points, if ``cloud`` is an array of points.
         triangles: Vertex indices, if ``cloud`` is an array of the vertices of a mesh.
         params: As for the object.
-        viewpoints: Positions of the cameras that saw it, supporter frame.
+        viewpoints: Positions of the cameras that saw it, supporter frame, metres, after ``scale`` and ``up``; by default
+            what the file says.
         region: Box that limits the places to hang on: two corners, supporter frame.
-        samples: Number of points to which a mesh is sampled.
+        samples: Number of points to which a mesh is sampled, 100 to 500000.
         scale, up, progress, name: As for :class:`Object`.
+
+    Points in double precision may have the coordinates of a map: ``origin`` is subtracted before the analysis, and what
+    is found is given in the map's frame.
     """
 
     def __init__(
@@ -177,6 +204,7 @@ class Supporter:
         self.origin = np.zeros(3)
         constants = resolve(params)
         mesh: tuple[Any, Any] | None = None
+        local_views = np.empty((0, 3), dtype=np.float32)
         if triangles is not None:
             mesh = (cloud, triangles)
         elif _is_path(cloud):
@@ -187,8 +215,8 @@ class Supporter:
                 mesh = (read["vertices"], read["triangles"])
             else:
                 points, normals = read["points"], read["normals"]
-                viewpoints = read["viewpoints"] if viewpoints is None else viewpoints
                 self.origin = _turn_point(np.array(read["origin"]) * scale, up)
+                local_views = _placed(read["viewpoints"], scale, up)
         elif isinstance(cloud, (np.ndarray, list, tuple)):
             points = cloud
         else:
@@ -203,22 +231,34 @@ class Supporter:
                 mesh, (points, normals) = None, found
         if mesh is not None:
             vertices = _placed(rows(mesh[0], "vertices"), scale, up)
+            least, most = _SAMPLES
+            if not least <= samples <= most:
+                text = f"samples is {samples}: give {least} to {most}"
+                raise InvalidInput(text, field="samples", value=samples, minimum=least, maximum=most)
             points, normals = _hangpose.sample(vertices, indices(mesh[1], "triangles"), samples, constants["seed"])
         else:
+            points = numbers(points, "points")
+            far = origin(points)
+            if far.any():
+                points = points - far
+                self.origin = _turn_point(far * scale, up)
             points = _placed(rows(points, "points"), scale, up)
             normals = None if normals is None else _placed(rows(normals, "normals"), 1.0, up)
         local = None if region is None else [[x - o for x, o in zip(corner, self.origin)] for corner in box(region, "region")]
+        if viewpoints is not None:
+            local_views = rows(np.atleast_2d(numbers(viewpoints, "viewpoints")) - self.origin, "viewpoints")
         self.name = name or "supporter"
         self._shared = {**constants, "centre_of_mass": None}
         self._constants = constants
         self._native = _hangpose.NativeSupporter(
             points,
             normals,
-            _placed(rows([] if viewpoints is None else viewpoints, "viewpoints"), scale, up),
+            local_views,
             local,
             constants,
             progress,
         )
+        _warn_of_size(points, "supporter")
 
     @property
     def places(self) -> npt.NDArray[np.float64]:

@@ -45,11 +45,11 @@ class UnreadableFile(HangposeError, OSError):
         return str(self.args[0])
 
 
-class Cancelled(HangposeError):
+class Cancelled(HangposeError, RuntimeError):
     """The call was cancelled."""
 
 
-class NoPath(HangposeError):
+class NoPath(HangposeError, RuntimeError):
     """There is no path to a pose, or none was found.
 
     Attributes:
@@ -57,7 +57,7 @@ class NoPath(HangposeError):
         collision: What collides with what, as a dictionary, or ``None``.
     """
 
-    def __init__(self, message: str, *, reason: str, collision: dict[str, Any] | None) -> None:
+    def __init__(self, message: str, *, reason: str = "", collision: dict[str, Any] | None = None) -> None:
         super().__init__(message)
         self.reason = reason
         self.collision = collision

@@ -1,10 +1,10 @@
 //! Errors as exceptions of `hangpose.errors`, with the fields of `hangpose_detail` in C.
 
 use hangpose::files::FileError;
-use hangpose::geometry::{CloudError, MeshError};
+use hangpose::geometry::{CloudError, MAX_COORDINATE, MeshError};
 use hangpose::hanging::{AnalysisError, PredictError, RegionError, RequestError};
 use hangpose::motion::{MotionError, PlanError};
-use hangpose::{FuseError, ParamsError};
+use hangpose::{FuseError, ParamsError, TooLarge};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -35,7 +35,7 @@ pub(crate) fn value(py: Python<'_>, field: &str, message: &str) -> PyErr {
     raise(py, "InvalidInput", message, Detail { field, ..Detail::default() })
 }
 
-fn element(py: Python<'_>, field: &str, index: Option<usize>, message: &str) -> PyErr {
+pub(crate) fn element(py: Python<'_>, field: &str, index: Option<usize>, message: &str) -> PyErr {
     raise(py, "InvalidInput", message, Detail { field, index, ..Detail::default() })
 }
 
@@ -60,29 +60,64 @@ pub(crate) fn params(py: Python<'_>, error: &ParamsError) -> PyErr {
     }
 }
 
-pub(crate) fn mesh(py: Python<'_>, error: &MeshError) -> PyErr {
-    let (field, index) = match error {
-        MeshError::Coordinate { vertex, .. } => ("vertices", Some(*vertex)),
-        MeshError::Index { triangle, .. } => ("triangles", Some(*triangle)),
-        MeshError::Viewpoint { viewpoint, .. } => ("viewpoints", Some(*viewpoint)),
-        MeshError::Empty | MeshError::TooLarge { .. } | MeshError::AllDegenerate { .. } => {
-            ("triangles", None)
+impl<'a> Detail<'a> {
+    fn of(field: &'a str) -> Self {
+        Self { field, ..Self::default() }
+    }
+
+    /// A count that is out of range.
+    fn count(self, count: usize, range: [usize; 2]) -> Self {
+        Self { value: Some(count as f64), range: Some(range.map(|limit| limit as f64)), ..self }
+    }
+
+    /// The first of three numbers of an element that is no coordinate.
+    fn coordinate(self, index: usize, position: &[f32; 3]) -> Self {
+        let wrong = position.iter().find(|x| x.is_nan() || x.abs() > MAX_COORDINATE);
+        let limit = f64::from(MAX_COORDINATE);
+        Self {
+            index: Some(index),
+            value: wrong.map(|x| f64::from(*x)),
+            range: Some([-limit, limit]),
+            ..self
         }
+    }
+}
+
+pub(crate) fn too_large(py: Python<'_>, error: &TooLarge) -> PyErr {
+    let TooLarge { what, count, limit, .. } = *error;
+    raise(py, "InvalidInput", &error.to_string(), Detail::of(what).count(count, [1, limit]))
+}
+
+pub(crate) fn mesh(py: Python<'_>, error: &MeshError) -> PyErr {
+    let detail = match error {
+        MeshError::Coordinate { vertex, position } => Detail::of("vertices").coordinate(*vertex, position),
+        MeshError::Viewpoint { viewpoint, position } => {
+            Detail::of("viewpoints").coordinate(*viewpoint, position)
+        }
+        MeshError::Index { triangle, vertex, vertices } => Detail {
+            index: Some(*triangle),
+            ..Detail::of("triangles").count(*vertex as usize, [0, vertices.saturating_sub(1)])
+        },
+        MeshError::TooLarge { count, limit } => Detail::of("triangles").count(*count, [1, *limit]),
+        MeshError::Empty | MeshError::AllDegenerate { .. } => Detail::of("triangles"),
     };
-    element(py, field, index, &error.to_string())
+    raise(py, "InvalidInput", &error.to_string(), detail)
 }
 
 pub(crate) fn cloud(py: Python<'_>, error: &CloudError) -> PyErr {
-    let (field, index) = match error {
-        CloudError::Coordinate { point, .. } => ("points", Some(*point)),
-        CloudError::Normal { point, .. } => ("normals", Some(*point)),
-        CloudError::NormalCount { .. } => ("normals", None),
-        CloudError::Viewpoint { viewpoint, .. } => ("viewpoints", Some(*viewpoint)),
-        CloudError::MarkCount { .. } => ("marks", None),
-        CloudError::Region { .. } => ("region", None),
-        CloudError::Empty | CloudError::TooLarge { .. } => ("points", None),
+    let detail = match error {
+        CloudError::Coordinate { point, position } => Detail::of("points").coordinate(*point, position),
+        CloudError::Normal { point, normal } => Detail::of("normals").coordinate(*point, normal),
+        CloudError::NormalCount { points, normals } => Detail::of("normals").count(*normals, [*points; 2]),
+        CloudError::Viewpoint { viewpoint, position } => {
+            Detail::of("viewpoints").coordinate(*viewpoint, position)
+        }
+        CloudError::MarkCount { points, marks } => Detail::of("marks").count(*marks, [*points; 2]),
+        CloudError::Region { .. } => Detail::of("region"),
+        CloudError::TooLarge { count, limit } => Detail::of("points").count(*count, [1, *limit]),
+        CloudError::Empty => Detail::of("points"),
     };
-    element(py, field, index, &error.to_string())
+    raise(py, "InvalidInput", &error.to_string(), detail)
 }
 
 pub(crate) fn analysis(py: Python<'_>, error: &AnalysisError) -> PyErr {

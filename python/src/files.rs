@@ -53,8 +53,10 @@ pub(crate) fn sample<'py>(
     count: usize,
     seed: u64,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-    let (vertices, triangles) = (rows(py, "vertices", &vertices)?, rows(py, "triangles", &triangles)?);
-    let mesh = Mesh::new(vertices, triangles).map_err(|error| errors::mesh(py, &error))?;
+    // Copies, since other threads may write to the arrays while the mesh is sampled.
+    let vertices = rows(py, "vertices", &vertices)?.to_vec();
+    let triangles = rows(py, "triangles", &triangles)?.to_vec();
+    let mesh = Mesh::new(&vertices, &triangles).map_err(|error| errors::mesh(py, &error))?;
     let cloud = py.detach(|| sample_supporter(&mesh, count, seed));
     let normals = cloud.normals.unwrap_or_default();
     Ok((array(py, cloud.points).into_any(), array(py, normals).into_any()))

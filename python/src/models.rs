@@ -2,10 +2,11 @@
 
 use crate::arrays::{array, rows};
 use crate::{errors, work};
+use hangpose::files::{CloudFile, MeshFile};
 use hangpose::geometry::{Cloud, Mesh};
 use hangpose::hanging::{Object, Supporter};
 use hangpose::memory::Limits;
-use hangpose::{Monitor, Params};
+use hangpose::{Monitor, Params, TooLarge};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pythonize::{depythonize, pythonize};
@@ -34,9 +35,7 @@ self_cell!(
 pub(crate) struct NativeObject {
     cell: ObjectCell,
     /// For the page that shows it.
-    vertices: Vec<[f32; 3]>,
-    triangles: Vec<[u32; 3]>,
-    viewpoints: Vec<[f32; 3]>,
+    mesh: MeshFile,
     pub(crate) params: Params,
 }
 
@@ -44,9 +43,8 @@ pub(crate) struct NativeObject {
 #[pyclass(frozen, module = "hangpose._hangpose")]
 pub(crate) struct NativeSupporter {
     cell: SupporterCell,
-    points: Vec<[f32; 3]>,
-    normals: Option<Vec<[f32; 3]>>,
-    viewpoints: Vec<[f32; 3]>,
+    /// For the page that shows it.
+    cloud: CloudFile,
 }
 
 impl NativeObject {
@@ -56,7 +54,7 @@ impl NativeObject {
 
     /// The mesh, which was valid when the object was made.
     pub(crate) fn mesh(&self) -> Option<Mesh<'_>> {
-        Mesh::new(&self.vertices, &self.triangles).ok()?.seen_from(&self.viewpoints).ok()
+        self.mesh.mesh().ok()
     }
 }
 
@@ -67,7 +65,7 @@ impl NativeSupporter {
 
     /// The cloud, which was valid when the supporter was made.
     pub(crate) fn cloud(&self) -> Option<Cloud<'_>> {
-        Cloud::new(&self.points, self.normals.as_deref()).ok()?.seen_from(&self.viewpoints).ok()
+        self.cloud.cloud().ok()
     }
 }
 
@@ -84,10 +82,15 @@ impl NativeObject {
     ) -> PyResult<Self> {
         let params: Params = depythonize(params)?;
         params.validate().map_err(|error| errors::params(py, &error))?;
-        let (vertices, triangles) = (rows(py, "vertices", &vertices)?, rows(py, "triangles", &triangles)?);
-        let viewpoints = rows(py, "viewpoints", &viewpoints)?;
-        let mesh = Mesh::new(vertices, triangles).and_then(|mesh| mesh.seen_from(viewpoints));
-        let mesh = mesh.map_err(|error| errors::mesh(py, &error))?;
+        // Copies, since other threads may write to the arrays while the analysis runs.
+        let file = MeshFile {
+            vertices: rows(py, "vertices", &vertices)?.to_vec(),
+            triangles: rows(py, "triangles", &triangles)?.to_vec(),
+            viewpoints: rows(py, "viewpoints", &viewpoints)?.to_vec(),
+            notes: Vec::new(),
+        };
+        TooLarge::check_mesh(&file).map_err(|error| errors::too_large(py, &error))?;
+        let mesh = file.mesh().map_err(|error| errors::mesh(py, &error))?;
         let monitor = Monitor::new();
         let memory = MutBorrow::new(vec![0; Object::bytes(&Object::limits(&mesh, &params))]);
         let analysed = work::run(py, &monitor, progress, || {
@@ -96,8 +99,7 @@ impl NativeObject {
             })
         })?;
         let cell = analysed.map_err(|error| errors::analysis(py, &error))?;
-        let (vertices, triangles, viewpoints) = (vertices.to_vec(), triangles.to_vec(), viewpoints.to_vec());
-        Ok(Self { cell, vertices, triangles, viewpoints, params })
+        Ok(Self { cell, mesh: file, params })
     }
 
     /// Centre of mass in object coordinates, metres.
@@ -129,7 +131,7 @@ impl NativeObject {
 
     #[getter]
     fn triangle_count(&self) -> usize {
-        self.triangles.len()
+        self.mesh.triangles.len()
     }
 }
 
@@ -147,25 +149,29 @@ impl NativeSupporter {
     ) -> PyResult<Self> {
         let params: Params = depythonize(params)?;
         params.validate().map_err(|error| errors::params(py, &error))?;
-        let points = rows(py, "points", &points)?;
         let normals = normals.as_ref().map(|normals| rows(py, "normals", normals)).transpose()?;
-        let viewpoints = rows(py, "viewpoints", &viewpoints)?;
-        let cloud = Cloud::new(points, normals).and_then(|cloud| cloud.seen_from(viewpoints));
-        let cloud = cloud.and_then(|cloud| match region {
+        // Copies, since other threads may write to the arrays while the analysis runs.
+        let file = CloudFile {
+            points: rows(py, "points", &points)?.to_vec(),
+            normals: normals.map(<[_]>::to_vec),
+            viewpoints: rows(py, "viewpoints", &viewpoints)?.to_vec(),
+            ..CloudFile::default()
+        };
+        TooLarge::check_cloud(&file).map_err(|error| errors::too_large(py, &error))?;
+        let cloud = file.cloud().and_then(|cloud| match region {
             Some([low, high]) => cloud.hang_within(low, high),
             None => Ok(cloud),
         });
         let cloud = cloud.map_err(|error| errors::cloud(py, &error))?;
         let monitor = Monitor::new();
-        let memory = MutBorrow::new(vec![0; Supporter::bytes(&Limits::of_points(points.len()))]);
+        let memory = MutBorrow::new(vec![0; Supporter::bytes(&Limits::of_points(file.points.len()))]);
         let analysed = work::run(py, &monitor, progress, || {
             SupporterCell::try_new(memory, |memory| {
                 Supporter::analyze(&cloud, &params, memory.borrow_mut(), &monitor)
             })
         })?;
         let cell = analysed.map_err(|error| errors::analysis(py, &error))?;
-        let (points, normals) = (points.to_vec(), normals.map(<[_]>::to_vec));
-        Ok(Self { cell, points, normals, viewpoints: viewpoints.to_vec() })
+        Ok(Self { cell, cloud: file })
     }
 
     /// Positions of the contact candidates, or of the support sites.
@@ -180,7 +186,7 @@ impl NativeSupporter {
     /// Number of points that were given.
     #[getter]
     fn point_count(&self) -> usize {
-        self.points.len()
+        self.cloud.points.len()
     }
 
     /// Number of points of the far side that were guessed.

@@ -70,7 +70,8 @@ pub(crate) fn plan<'py>(
     };
     let way: Way = depythonize(way)?;
     let wishes: Wishes = depythonize(wishes)?;
-    let scene = arrays::rows(py, "scene", &scene)?;
+    // A copy, since other threads may write to the array during the call.
+    let scene = arrays::rows(py, "scene", &scene)?.to_vec();
     let parts: Vec<Capsule> = way.gripper.iter().flat_map(|hand| &hand.parts).map(Capsule::from).collect();
     let samples = way.samples.unwrap_or(Motion::DEFAULT.samples);
     let motion = Motion {
@@ -87,7 +88,7 @@ pub(crate) fn plan<'py>(
     motion.validate().map_err(|error| errors::motion(py, &error))?;
     let monitor = Monitor::new();
     let accepts = accepts.map(Bound::unbind);
-    let answer = wishes.with(py, &hung, scene, |request| {
+    let answer = wishes.with(py, &hung, &scene, |request| {
         let (object, supporter, params) = (object.object(), supporter.supporter(), &object.params);
         let task = Task { object, supporter, request, params, motion };
         let limits = Limits { points: supporter.limits().points, ..Limits::NONE };

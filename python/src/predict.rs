@@ -4,7 +4,7 @@ use crate::models::{NativeObject, NativeSupporter};
 use crate::request::Wishes;
 use crate::{arrays, errors, work};
 use hangpose::geometry::Pose;
-use hangpose::hanging::{Counts, HangingPose, Rejection, Request, Watch};
+use hangpose::hanging::{Counts, HangingPose, Rejection, Request, SettlingCounts, Watch};
 use hangpose::mechanics::Fate;
 use hangpose::{Monitor, predict_poses};
 use numpy::PyReadonlyArray2;
@@ -50,13 +50,14 @@ pub(crate) fn predict<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(Bound<'py, PyAny>, NativePrediction)> {
     let wishes: Wishes = depythonize(wishes)?;
-    let scene = arrays::rows(py, "scene", &scene)?;
+    // A copy, since other threads may write to the array during the call.
+    let scene = arrays::rows(py, "scene", &scene)?.to_vec();
     let monitor = work_limit.map_or_else(Monitor::new, Monitor::with_work_limit);
     let released = Mutex::new(Vec::new());
     let watch =
         |pose: &Pose, fate| released.lock().unwrap_or_else(PoisonError::into_inner).push((*pose, fate));
     let mut poses = vec![HangingPose::default(); top];
-    let (count, rejection, stopped, counts) = wishes.with(py, &hung, scene, |request| {
+    let (count, rejection, stopped, counts) = wishes.with(py, &hung, &scene, |request| {
         let request = &Request { watch: Some(Watch(&watch)), ..*request };
         let (object, supporter, params) = (object.object(), supporter.supporter(), &object.params);
         let found = work::run(py, &monitor, progress, || {
@@ -73,19 +74,47 @@ pub(crate) fn predict<'py>(
             hangpose::Stop::Cancelled => "cancelled".into(),
             hangpose::Stop::WorkLimit => "work_limit".into(),
         }),
-        counts: json!({
-            "released": counts.settling.released,
-            "at_rest": counts.settling.at_rest,
-            "rotated_off": counts.settling.rotated_off,
-            "slid_off": counts.settling.slid_off,
-            "moving": counts.settling.moving,
-            "probable": counts.settling.probable,
-            "firm": counts.settling.firm,
-        }),
+        counts: counts_of(&counts),
     };
     let released = released.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let native = NativePrediction { poses, rejection, counts, released, scene: scene.to_vec() };
+    let native = NativePrediction { poses, rejection, counts, released, scene };
     Ok((pythonize(py, &summary)?, native))
+}
+
+/// As `settling` in the JSON of the command.
+fn counts_of(counts: &Counts) -> Value {
+    let SettlingCounts {
+        released,
+        rotated_off,
+        slid_off,
+        moving,
+        at_rest,
+        wedged,
+        unseen,
+        probable,
+        firm,
+        firm_as_preferred,
+        in_scene,
+        outside,
+        other_kind,
+        no_approach,
+    } = counts.settling;
+    json!({
+        "released": released,
+        "rotated_off": rotated_off,
+        "slid_off": slid_off,
+        "moving": moving,
+        "at_rest": at_rest,
+        "wedged": wedged,
+        "unseen": unseen,
+        "probable": probable,
+        "firm": firm,
+        "firm_as_preferred": firm_as_preferred,
+        "in_scene": in_scene,
+        "outside": outside,
+        "other_kind": other_kind,
+        "no_approach": no_approach,
+    })
 }
 
 pub(crate) fn placed(pose: &Pose) -> Value {

@@ -2,20 +2,19 @@
 
 use crate::arrays::array;
 use crate::{errors, work};
-use hangpose::files::depth::{DepthFile, ScanFrame};
-use hangpose::geometry::{Aabb, Pose};
+use hangpose::files::depth::{DepthFile, ScanFrame, pose_of_rows};
+use hangpose::geometry::Aabb;
 use hangpose::perception::completion::CompletionSettings;
 use hangpose::perception::depth::DepthCamera;
 use hangpose::perception::depth_points::DepthPointsSettings;
 use hangpose::perception::volume::VolumeSettings;
 use hangpose::{CLOUD_VOXEL, Monitor, complete_scan, suggested_voxel};
-use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// An image: depths, labels, and the row-major matrix from camera to world coordinates.
-type Image<'py> = (PyReadonlyArray2<'py, u16>, Option<PyReadonlyArray2<'py, u8>>, [[f64; 4]; 4]);
+/// An image: depths, metres per unit of depth, labels, and the row-major matrix from camera to world coordinates.
+type Image<'py> = (PyReadonlyArray2<'py, u16>, f32, Option<PyReadonlyArray2<'py, u8>>, [[f64; 4]; 4]);
 
 /// What all images have in common.
 #[derive(FromPyObject)]
@@ -25,19 +24,14 @@ pub(crate) struct Common {
     #[pyo3(item)]
     distortion: [f32; 5],
     #[pyo3(item)]
-    scale: f32,
-    #[pyo3(item)]
     label: u8,
     #[pyo3(item)]
     voxel: Option<f32>,
     #[pyo3(item)]
     crop: Option<[[f32; 3]; 2]>,
     #[pyo3(item)]
-    max_depth: Option<f32>,
+    max_depth: f32,
 }
-
-/// Tolerance for the rounding of a rotation matrix.
-const ROUNDING: f64 = 1e-3;
 
 impl Common {
     fn crop(&self) -> Option<Aabb> {
@@ -48,20 +42,15 @@ impl Common {
         images.iter().enumerate().map(|(index, image)| self.frame(py, index, image)).collect()
     }
 
-    fn frame(&self, py: Python<'_>, index: usize, (depths, labels, pose): &Image) -> PyResult<ScanFrame> {
-        let wrong = |field: &str, text: String| errors::value(py, field, &format!("image {index}: {text}"));
+    fn frame(&self, py: Python<'_>, index: usize, (depths, scale, labels, pose): &Image) -> PyResult<ScanFrame> {
+        let wrong = |field: &str, text: String| {
+            errors::element(py, field, Some(index), &format!("image {index} (counted from 0): {text}"))
+        };
         let size = [depths.shape()[1] as u32, depths.shape()[0] as u32];
         let [[fx, _, cx], [_, fy, cy], _] = self.intrinsics;
         let camera = DepthCamera::new(size, [fx, fy], [cx, cy], self.distortion)
             .map_err(|error| wrong("intrinsics", error.to_string()))?;
-        let rotation = Matrix3::from_fn(|row, column| pose[row][column]);
-        let is_rotation = (rotation * rotation.transpose() - Matrix3::identity()).norm() < ROUNDING
-            && rotation.determinant() > 0.0;
-        if !is_rotation {
-            return Err(wrong("poses", "the pose is no matrix of a rotation and a position".into()));
-        }
-        let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation));
-        let position = nalgebra::Vector3::from_fn(|row, _| pose[row][3] as f32);
+        let pose = pose_of_rows(pose.as_flattened()).map_err(|reason| wrong("poses", reason))?;
         let values = depths.as_array().iter().copied().collect();
         let labels = match labels {
             Some(labels) if labels.shape() != depths.shape() => {
@@ -73,8 +62,8 @@ impl Common {
             depth: DepthFile { path: format!("image {index}").into(), size, depths: values },
             labels,
             camera,
-            scale: self.scale,
-            pose: Pose::from_parts(position.into(), turn.cast()),
+            scale: *scale,
+            pose,
         })
     }
 }
@@ -90,7 +79,7 @@ pub(crate) fn scan<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let frames = common.frames(py, &images)?;
     let crop = common.crop();
-    let max_depth = common.max_depth.unwrap_or(VolumeSettings::new(1.0).max_depth);
+    let max_depth = common.max_depth;
     let monitor = Monitor::new();
     let scanned = work::run(py, &monitor, progress, || {
         let voxel = common.voxel.unwrap_or_else(|| suggested_voxel(&frames, max_depth, crop));
@@ -106,6 +95,7 @@ pub(crate) fn scan<'py>(
     result.set_item("triangles", array(py, scanned.triangles))?;
     result.set_item("seen", numpy::PyArray1::from_vec(py, scanned.seen))?;
     result.set_item("viewpoints", array(py, scanned.viewpoints))?;
+    result.set_item("agreement", scanned.agreement)?;
     Ok(result)
 }
 
@@ -118,15 +108,17 @@ pub(crate) fn scan_cloud<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let frames = common.frames(py, &images)?;
-    let mut settings = DepthPointsSettings { crop: common.crop(), ..DepthPointsSettings::default() };
-    settings.max_depth = common.max_depth.unwrap_or(settings.max_depth);
+    let (crop, max_depth) = (common.crop(), common.max_depth);
+    let settings = DepthPointsSettings { crop, max_depth, ..DepthPointsSettings::default() };
     let voxel = common.voxel.unwrap_or(CLOUD_VOXEL);
     let scanned =
         work::run(py, &Monitor::new(), progress, || hangpose::scan_cloud(&frames, voxel, &settings))?;
-    let cloud = scanned.map_err(|error| errors::fuse(py, &error))?.cloud;
+    let scanned = scanned.map_err(|error| errors::fuse(py, &error))?;
+    let cloud = scanned.cloud;
     let result = PyDict::new(py);
     result.set_item("points", array(py, cloud.points))?;
     result.set_item("normals", array(py, cloud.normals.unwrap_or_default()))?;
     result.set_item("viewpoints", array(py, cloud.viewpoints))?;
+    result.set_item("agreement", scanned.agreement)?;
     Ok(result)
 }
