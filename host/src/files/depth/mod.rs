@@ -20,6 +20,7 @@ mod tum;
 
 pub use error::ScanError;
 pub use png::{DepthFile, MaskFile, read_depth, read_mask};
+pub use rigid::of_rows as pose_of_rows;
 
 use std::path::{Path, PathBuf};
 

@@ -27,8 +27,11 @@ pub(super) fn pose(rotation: &Matrix3<f64>, translation: Vector3<f64>) -> Result
     Ok(Pose::from_parts(translation.cast().into(), rotation.cast()))
 }
 
-/// The pose of a row-major 4 x 4 matrix.
-pub(super) fn of_rows(m: &[f64]) -> Result<Pose, String> {
+/// The pose of the sixteen numbers of a row-major 4 x 4 matrix; `Err` is the reason why it is none.
+pub fn of_rows(m: &[f64]) -> Result<Pose, String> {
+    if m.len() != 16 {
+        return Err(format!("a 4 x 4 pose has 16 numbers, not {}", m.len()));
+    }
     if (0..4).any(|i| (m[12 + i] - if i == 3 { 1.0 } else { 0.0 }).abs() > 1e-6) {
         return Err("the last row of a 4 x 4 pose must be 0 0 0 1".into());
     }

@@ -1,0 +1,45 @@
+"""Where and how to hang an object that a robot has never seen.
+
+>>> import hangpose
+>>> mug, hook = hangpose.Object("samples/mug.obj"), hangpose.Supporter("samples/hook.ply")
+>>> print(hangpose.predict(mug, hook).best)
+<Pose 1: threaded, hangs with probability 98%, release at (0.0634, -0.0557, -0.0446) m>
+
+Lengths are in metres. A pose maps object coordinates to supporter coordinates, in which z is up.
+"""
+
+from ._hangpose import __version__
+from ._params import Params
+from ._poses import Contact, Margin, Path, Placement, Pose, Prediction, Rejection, Tolerance, Unseen
+from ._predict import Capsule, Gripper, plan, predict
+from ._scan import scan
+from ._shapes import Object, Supporter
+from ._view import view
+from .errors import Cancelled, HangposeError, InvalidInput, NoPath, UnreadableFile
+
+__all__ = [
+    "Cancelled",
+    "Capsule",
+    "Contact",
+    "Gripper",
+    "HangposeError",
+    "InvalidInput",
+    "Margin",
+    "NoPath",
+    "Object",
+    "Params",
+    "Path",
+    "Placement",
+    "Pose",
+    "Prediction",
+    "Rejection",
+    "Supporter",
+    "Tolerance",
+    "Unseen",
+    "UnreadableFile",
+    "__version__",
+    "plan",
+    "predict",
+    "scan",
+    "view",
+]
