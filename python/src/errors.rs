@@ -74,12 +74,7 @@ impl<'a> Detail<'a> {
     fn coordinate(self, index: usize, position: &[f32; 3]) -> Self {
         let wrong = position.iter().find(|x| x.is_nan() || x.abs() > MAX_COORDINATE);
         let limit = f64::from(MAX_COORDINATE);
-        Self {
-            index: Some(index),
-            value: wrong.map(|x| f64::from(*x)),
-            range: Some([-limit, limit]),
-            ..self
-        }
+        Self { index: Some(index), value: wrong.map(|x| f64::from(*x)), range: Some([-limit, limit]), ..self }
     }
 }
 

@@ -16,10 +16,9 @@ use host_tests::scan::{Sensor, Target, looking};
 use host_tests::shapes::Random;
 use host_tests::shapes::vector::{V, X, Y, Z, add, arc, cross, length, scale, sub, turn, unit};
 use host_tests::winding::Winding;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder};
 use parry3d::math;
 use parry3d::shape::TriMesh;
+use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 use shapes::{Body, line};
 
 /// Named closed bodies, which may overlap.
@@ -69,12 +68,17 @@ fn depth_image(mesh: &Mesh) -> Vec<u8> {
     let sensor = Sensor { camera, unit: 0.001, ..Sensor::perfect() };
     let shot = sensor.take(&trimesh, &looking(&target, &Vector::from(EYE)), &mut Random::new(0));
     let image = shot.image().expect("the mug is in the image");
-    let bytes: Vec<u8> = image.depths().iter().flat_map(|depth| depth.to_ne_bytes()).collect();
-    let mut png = Vec::new();
-    PngEncoder::new_with_quality(&mut png, CompressionType::Uncompressed, FilterType::NoFilter)
-        .write_image(&bytes, IMAGE[0], IMAGE[1], ExtendedColorType::L16)
-        .expect("a vector takes all bytes");
-    png
+    let bytes: Vec<u8> = image.depths().iter().flat_map(|depth| depth.to_be_bytes()).collect();
+    let mut file = Vec::new();
+    let mut encoder = Encoder::new(&mut file, IMAGE[0], IMAGE[1]);
+    encoder.set_color(ColorType::Grayscale);
+    encoder.set_depth(BitDepth::Sixteen);
+    encoder.set_compression(Compression::NoCompression);
+    encoder.set_filter(Filter::NoFilter);
+    let mut writer = encoder.write_header().expect("memory takes the header");
+    writer.write_image_data(&bytes).expect("there are as many bytes as the size says");
+    drop(writer);
+    file
 }
 
 /// A mug of 3.5 dl. The cup stands on z = 0 about the z axis; the handle is on the side of +x.
