@@ -41,6 +41,9 @@ command -v valgrind >/dev/null || missing+=(valgrind libc6-dbg)
 command -v dpkg-shlibdeps >/dev/null || missing+=(dpkg-dev)
 command -v file >/dev/null || missing+=(file)
 pkg-config --exists eigen3 2>/dev/null || missing+=(libeigen3-dev)
+# The Python module and its tests.
+command -v python3 >/dev/null || missing+=(python3)
+python3 -c 'import ensurepip, venv' 2>/dev/null || missing+=(python3-venv)
 
 if command -v rustup >/dev/null; then
     have=$(rustup component list --installed)

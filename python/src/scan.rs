@@ -42,7 +42,12 @@ impl Common {
         images.iter().enumerate().map(|(index, image)| self.frame(py, index, image)).collect()
     }
 
-    fn frame(&self, py: Python<'_>, index: usize, (depths, scale, labels, pose): &Image) -> PyResult<ScanFrame> {
+    fn frame(
+        &self,
+        py: Python<'_>,
+        index: usize,
+        (depths, scale, labels, pose): &Image,
+    ) -> PyResult<ScanFrame> {
         let wrong = |field: &str, text: String| {
             errors::element(py, field, Some(index), &format!("image {index} (counted from 0): {text}"))
         };
