@@ -42,9 +42,8 @@ command -v valgrind >/dev/null || missing+=(valgrind libc6-dbg)
 command -v dpkg-shlibdeps >/dev/null || missing+=(dpkg-dev)
 command -v file >/dev/null || missing+=(file)
 pkg-config --exists eigen3 2>/dev/null || missing+=(libeigen3-dev)
-# The comparison of the binary interface with the stored one, and colcon, which scripts/colcon.sh installs.
+# The comparison of the binary interface with the stored one.
 command -v abidiff >/dev/null || missing+=(abigail-tools)
-python3 -m venv --help >/dev/null 2>&1 && python3 -m ensurepip --version >/dev/null 2>&1 || missing+=(python3-venv)
 # The tools that build and test the page of viewer/, from Node.js 18 on.
 command -v node >/dev/null || missing+=(nodejs)
 command -v npm >/dev/null || missing+=(npm)
@@ -56,8 +55,9 @@ has_daemon() { command -v "$1" >/dev/null || [ -x "/usr/sbin/$1" ]; }
 { has_daemon slurmctld && has_daemon slurmd && command -v sbatch >/dev/null; } || missing+=(slurm-wlm)
 has_daemon munged || missing+=(munge)
 
-# The virtual environments of Python, for the tools of the book and of the comparisons.
-python3 -c 'import ensurepip' 2>/dev/null || missing+=(python3-venv)
+# The Python module with its tests, the tools of the book, colcon and the comparisons.
+command -v python3 >/dev/null || missing+=(python3)
+python3 -c 'import ensurepip, venv' 2>/dev/null || missing+=(python3-venv)
 
 if command -v rustup >/dev/null; then
     have=$(rustup component list --installed)

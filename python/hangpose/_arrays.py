@@ -12,7 +12,8 @@ from .errors import InvalidInput
 
 def rows(values: Any, name: str) -> npt.NDArray[np.float32]:
     """An array of shape (n, 3) in single precision; not copied if it is one already."""
-    return _rows(numbers(values, name), name, np.float32)
+    array: npt.NDArray[np.float32] = _rows(numbers(values, name), name, np.float32)
+    return array
 
 
 def numbers(values: Any, name: str) -> npt.NDArray[Any]:
@@ -50,7 +51,8 @@ def triangles(values: Any, name: str) -> npt.NDArray[np.uint32]:
     if array.size and (array.min() < 0 or array.max() > np.iinfo(np.uint32).max):
         index = int(np.argwhere((array < 0) | (array > np.iinfo(np.uint32).max))[0][0])
         raise InvalidInput(f"{name}[{index}] is no index of a vertex: {array[index]}", field=name, index=index)
-    return _rows(array, name, np.uint32)
+    indices: npt.NDArray[np.uint32] = _rows(array, name, np.uint32)
+    return indices
 
 
 def _rows(values: Any, name: str, dtype: Any) -> Any:

@@ -1,7 +1,7 @@
 """The native part: arrays, dictionaries and strings. Use the classes and functions of `hangpose`."""
 
 from os import PathLike
-from typing import Any, Callable, Sequence
+from typing import Any, Callable, Sequence, final
 
 import numpy as np
 import numpy.typing as npt
@@ -10,8 +10,25 @@ _Floats = npt.NDArray[np.float32]
 _Indices = npt.NDArray[np.uint32]
 _Progress = Callable[[float], object] | None
 
+__all__ = [
+    "NativeObject",
+    "NativePrediction",
+    "NativeSupporter",
+    "__version__",
+    "page",
+    "params",
+    "plan",
+    "predict",
+    "read_mesh",
+    "read_supporter",
+    "sample",
+    "scan",
+    "scan_cloud",
+]
+
 __version__: str
 
+@final
 class NativeObject:
     def __new__(
         cls, vertices: _Floats, triangles: _Indices, viewpoints: _Floats, params: dict[str, Any], progress: _Progress
@@ -27,6 +44,7 @@ class NativeObject:
     @property
     def triangle_count(self) -> int: ...
 
+@final
 class NativeSupporter:
     def __new__(
         cls,
@@ -44,6 +62,7 @@ class NativeSupporter:
     @property
     def guessed(self) -> int: ...
 
+@final
 class NativePrediction: ...
 
 def params(profile: str, changes: dict[str, Any]) -> dict[str, Any]: ...
@@ -73,9 +92,9 @@ def plan(
     progress: _Progress,
 ) -> dict[str, Any]: ...
 def scan(
-    images: list[tuple[Any, Any, Any]], common: dict[str, Any], complete: bool, progress: _Progress
+    images: Sequence[tuple[Any, float, Any, Any]], common: dict[str, Any], complete: bool, progress: _Progress
 ) -> dict[str, Any]: ...
-def scan_cloud(images: list[tuple[Any, Any, Any]], common: dict[str, Any], progress: _Progress) -> dict[str, Any]: ...
+def scan_cloud(images: Sequence[tuple[Any, float, Any, Any]], common: dict[str, Any], progress: _Progress) -> dict[str, Any]: ...
 def page(
     object: NativeObject,
     supporter: NativeSupporter,

@@ -159,7 +159,7 @@ def plan(
             return bool(chosen(_moved(rows, origin)))
 
     answer = _hangpose.plan(
-        object._native, supporter._native, _placed(release, origin), rest and _placed(rest, origin), way, wishes, others,
+        object._native, supporter._native, _placed(release, origin), None if rest is None else _placed(rest, origin), way, wishes, others,
         points, ask, progress,
     )  # fmt: skip
     failure = answer.get("failure")
@@ -250,13 +250,16 @@ def _local_box(values: Any, origin: Matrix) -> list[list[float]]:
 
 
 def _hand(gripper: Gripper) -> dict[str, Any]:
-    part = lambda capsule: {  # noqa: E731
-        "start": vector(capsule.start, "gripper.parts"),
-        "end": vector(capsule.end, "gripper.parts"),
-        "radius": float(capsule.radius),
-        "opening": vector(capsule.opening, "gripper.parts"),
-    }
-    return {"parts": [part(capsule) for capsule in gripper.parts], "retreat": vector(gripper.retreat, "gripper.retreat")}
+    parts = [
+        {
+            "start": vector(capsule.start, "gripper.parts"),
+            "end": vector(capsule.end, "gripper.parts"),
+            "radius": float(capsule.radius),
+            "opening": vector(capsule.opening, "gripper.parts"),
+        }
+        for capsule in gripper.parts
+    ]
+    return {"parts": parts, "retreat": vector(gripper.retreat, "gripper.retreat")}
 
 
 def _moved(rows: list[float], origin: Matrix) -> Matrix:
@@ -282,7 +285,8 @@ def _pose(rank: int, value: dict[str, Any], origin: Matrix) -> Pose:
     tolerance, unseen, margin = value["tolerance"], value["unseen"], value["margin"]
     if margin is not None:
         margin = Margin(**{**margin, "tilts": tuple(margin["tilts"])})
-        unseen = Unseen(**{name: tuple(part) if isinstance(part, list) else part for name, part in unseen.items()})
+        views = {name: tuple(unseen[name]) for name in ("object_view", "supporter_view")}
+        unseen = Unseen(**{**unseen, **views})
         tolerance = Tolerance(**tolerance)
     contacts = tuple(
         Contact(tuple(np.array(c["position"]) + origin), tuple(c["normal"]), c["force"]) for c in value["contacts"] or ()

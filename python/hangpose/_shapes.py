@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import Any, Callable
+from typing import Any, Callable, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,7 @@ from ._params import ParamsLike, resolve
 from .errors import InvalidInput
 
 Progress = Callable[[float], object]
+_Float = TypeVar("_Float", np.float32, np.float64)
 
 _AXES = ("x", "y", "z")
 _PLAUSIBLE = (0.005, 5.0)
@@ -30,7 +31,7 @@ def _warn_of_size(points: npt.NDArray[np.float32], what: str) -> None:
         warnings.warn(text, stacklevel=3)
 
 
-def _turn(array: npt.NDArray[np.float32], up: str) -> npt.NDArray[np.float32]:
+def _turn(array: npt.NDArray[_Float], up: str) -> npt.NDArray[_Float]:
     """Turns coordinates by the smallest angle that maps an axis to z."""
     sign = -1 if up.startswith("-") else 1
     axis = up.lower().removeprefix("+").removeprefix("-")

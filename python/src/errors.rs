@@ -72,7 +72,7 @@ impl<'a> Detail<'a> {
 
     /// The first of three numbers of an element that is no coordinate.
     fn coordinate(self, index: usize, position: &[f32; 3]) -> Self {
-        let wrong = position.iter().find(|x| x.is_nan() || x.abs() > MAX_COORDINATE);
+        let wrong = position.iter().find(|x| x.abs() > MAX_COORDINATE);
         let limit = f64::from(MAX_COORDINATE);
         Self { index: Some(index), value: wrong.map(|x| f64::from(*x)), range: Some([-limit, limit]), ..self }
     }
