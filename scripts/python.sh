@@ -11,12 +11,13 @@ if ! cmp -s python/tests/requirements.txt $venv/requirements.txt; then
     cp python/tests/requirements.txt $venv/requirements.txt
 fi
 
-# The command is the oracle. The workspace as a whole has the features with which `cargo test --workspace` compiled it.
-cargo build --quiet --workspace --bin hangpose
+# The same crates with the same features as `cargo test --workspace`, so that nothing is compiled twice. The wheel is built
+# by maturin: scripts/wheel.sh.
+cargo build --quiet --workspace --lib --bins --tests
 target=$(cargo metadata --format-version 1 --no-deps | $venv/bin/python -c 'import json, sys; print(json.load(sys.stdin)["target_directory"])')
-if ! VIRTUAL_ENV=$PWD/$venv $venv/bin/maturin develop --profile dev --manifest-path python/Cargo.toml >$venv/maturin.log 2>&1; then
-    cat $venv/maturin.log >&2
-    exit 1
-fi
+site=$($venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+rm -rf "$site/hangpose"
+cp -r python/hangpose "$site/hangpose"
+cp "$target/debug/lib_hangpose.so" "$site/hangpose/_hangpose.abi3.so"
 export HANGPOSE_COMMAND=$target/debug/hangpose MYPY_CACHE_DIR=$PWD/$venv/mypy
 $venv/bin/python -m pytest -q -o cache_dir="$PWD/$venv/pytest" python/tests "$@"
