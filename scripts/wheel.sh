@@ -14,7 +14,6 @@ export PATH=$PWD/$venv/bin:$PATH
 
 mkdir -p build/dist
 rm -f build/dist/hangpose-*.whl build/dist/hangpose-*.tar.gz
-# rustup's standard library; zig finds the C++ one itself.
 maturin build --manifest-path python/Cargo.toml --zig --compatibility manylinux_2_28 --out build/dist
 maturin sdist --manifest-path python/Cargo.toml --out build/dist
 
