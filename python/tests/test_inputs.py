@@ -268,6 +268,16 @@ def test_files_that_cannot_be_read(tmp_path: Any) -> None:
     with pytest.raises(hangpose.UnreadableFile, match="cut off") as caught:
         hangpose.Supporter(str(cut))
     assert isinstance(caught.value, OSError) and caught.value.field == "path"
+    constants = tmp_path / "params.toml"
+    for text, message in [("friction = 0.5\nfrictio = 0.5\n", "line 2"), ("friction =", "line 1"), (None, "cannot be read")]:
+        constants.unlink(missing_ok=True)
+        if text is not None:
+            constants.write_text(text)
+        with pytest.raises(hangpose.UnreadableFile, match=message):
+            hangpose.Params(file=constants)
+    constants.write_text("friction = 7\n")
+    with pytest.raises(hangpose.InvalidInput, match="friction = 7 is outside its range"):
+        hangpose.Params(file=constants)
     assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
 
 
