@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the Python module, installs it in a virtual environment in build/python and runs its tests there. Quick if nothing
-# changed. Arguments are passed on to pytest.
+# Builds the Python module, installs it in a virtual environment in build/python and runs its tests there. Quick if
+# nothing changed. Arguments are passed on to pytest.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -13,8 +13,10 @@ fi
 
 # The command is the oracle. The workspace as a whole has the features with which `cargo test --workspace` compiled it.
 cargo build --quiet --workspace --bin hangpose
-target=$(cargo metadata --format-version 1 --no-deps | $venv/bin/python -c 'import json, sys; print(json.load(sys.stdin)["target_directory"])')
-if ! VIRTUAL_ENV=$PWD/$venv $venv/bin/maturin develop --profile dev --manifest-path python/Cargo.toml >$venv/maturin.log 2>&1; then
+target=$(cargo metadata --format-version 1 --no-deps |
+    $venv/bin/python -c 'import json, sys; print(json.load(sys.stdin)["target_directory"])')
+export VIRTUAL_ENV=$PWD/$venv
+if ! $venv/bin/maturin develop --profile dev --manifest-path python/Cargo.toml >$venv/maturin.log 2>&1; then
     cat $venv/maturin.log >&2
     exit 1
 fi

@@ -96,7 +96,9 @@ def plan(
 def scan(
     images: Sequence[tuple[Any, float, Any, Any]], common: dict[str, Any], complete: bool, progress: _Progress
 ) -> dict[str, Any]: ...
-def scan_cloud(images: Sequence[tuple[Any, float, Any, Any]], common: dict[str, Any], progress: _Progress) -> dict[str, Any]: ...
+def scan_cloud(
+    images: Sequence[tuple[Any, float, Any, Any]], common: dict[str, Any], progress: _Progress
+) -> dict[str, Any]: ...
 def page(
     object: NativeObject,
     supporter: NativeSupporter,

@@ -11,8 +11,8 @@ from . import _hangpose
 
 
 class Params(Mapping[str, Any]):
-    """All constants. ``Params()`` is the default profile and ``Params("paper")`` the published method; keyword arguments
-    change single constants, and ``file`` is a TOML file of changes.
+    """All constants. ``Params()`` is the default profile and ``Params("paper")`` the published method; keyword
+    arguments change single constants, and ``file`` is a TOML file of changes.
 
     >>> Params(clearance=0.002)["clearance"]
     0.002
