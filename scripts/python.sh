@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the Python module, installs it in a virtual environment in build/python and runs its tests there. Quick if nothing
-# changed. Arguments are passed on to pytest.
+# Builds the Python module, installs it in a virtual environment in build/python and runs its tests there. Quick if
+# nothing changed. Arguments are passed on to pytest.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -14,7 +14,8 @@ fi
 # The same crates with the same features as `cargo test --workspace`, so that nothing is compiled twice. The wheel is built
 # by maturin: scripts/wheel.sh.
 cargo build --quiet --workspace --lib --bins --tests
-target=$(cargo metadata --format-version 1 --no-deps | $venv/bin/python -c 'import json, sys; print(json.load(sys.stdin)["target_directory"])')
+target=$(cargo metadata --format-version 1 --no-deps |
+    $venv/bin/python -c 'import json, sys; print(json.load(sys.stdin)["target_directory"])')
 site=$($venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
 rm -rf "$site/hangpose"
 cp -r python/hangpose "$site/hangpose"

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Builds the wheel of the Python module for every Linux with glibc 2.28 or later and Python 3.10 or later, and its source
-# distribution: build/dist/. The compiler of zig links against the symbols of that glibc, so that no container is needed.
+# Builds the wheel of the Python module for every Linux with glibc 2.28 or later and Python 3.10 or later, and its
+# source distribution: build/dist/. The compiler of zig links against the symbols of that glibc, so that no container is
+# needed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -19,7 +20,8 @@ maturin sdist --manifest-path python/Cargo.toml --out build/dist
 
 wheel=(build/dist/hangpose-*.whl)
 auditwheel show "${wheel[0]}" | tee build/wheel/platform.txt
-tr -s '[:space:]' ' ' <build/wheel/platform.txt | grep -q 'consistent with the following platform tag: "manylinux_2_\(1[0-9]\|2[0-8]\)_' ||
+tr -s '[:space:]' ' ' <build/wheel/platform.txt |
+    grep -q 'consistent with the following platform tag: "manylinux_2_\(1[0-9]\|2[0-8]\)_' ||
     { echo "wheel.sh: the wheel needs more than manylinux_2_28" >&2; exit 1; }
 
 # A fresh environment loads the wheel and predicts.

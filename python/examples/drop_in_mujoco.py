@@ -62,7 +62,10 @@ def main() -> int:
         mujoco.mj_step(model, data)
     sank = before[2] - data.subtree_com[0][2]
     hangs = bool(np.isfinite(sank) and sank < FELL)
-    print(f"after {SECONDS:.0f} s in MuJoCo it {'hangs' if hangs else 'has fallen'}; its centre of mass sank by {1e3 * sank:.1f} mm")
+    print(
+        f"after {SECONDS:.0f} s in MuJoCo it {'hangs' if hangs else 'has fallen'}; "
+        f"its centre of mass sank by {1e3 * sank:.1f} mm"
+    )
     return 0 if hangs else 1
 
 

@@ -28,8 +28,8 @@ def numbers(values: Any, name: str) -> npt.NDArray[Any]:
 
 
 def origin(points: npt.NDArray[Any]) -> npt.NDArray[np.float64]:
-    """What to subtract from points in double precision so that single precision holds their details: zero unless they are as
-    far from the origin as on a map. The same as for files."""
+    """What to subtract from points in double precision so that single precision holds their details: zero unless they are
+    as far from the origin as on a map. The same as for files."""
     if points.dtype != np.float64 or points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
         return np.zeros(3)
     if not len(points):

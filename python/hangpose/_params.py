@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 import os
-import sys
 from typing import Any, Iterator, Mapping, Union
 
 import numpy as np
 
 from . import _hangpose
-from .errors import InvalidInput, UnreadableFile
 
 
 class Params(Mapping[str, Any]):
-    """All constants. ``Params()`` is the default profile and ``Params("paper")`` the published method; keyword arguments
-    change single constants, and ``file`` is a TOML file of changes.
+    """All constants. ``Params()`` is the default profile and ``Params("paper")`` the published method; keyword
+    arguments change single constants, and ``file`` is a TOML file of changes.
 
     >>> Params(clearance=0.002)["clearance"]
     0.002
     """
 
     def __init__(self, profile: str = "default", *, file: str | os.PathLike[str] | None = None, **changes: Any) -> None:
-        read = {} if file is None else _read(file)
-        self._values = _hangpose.params(profile, {**read, **changes})
-        self._profile, self._given = profile, {**read, **changes}
+        read = {} if file is None else _hangpose.read_params(file)
+        self._profile, self._given = profile, {**read, **{name: _plain(value) for name, value in changes.items()}}
+        self._values = _hangpose.params(profile, self._given)
 
     def __getitem__(self, name: str) -> Any:
         value = self._values[name]
@@ -41,6 +39,11 @@ class Params(Mapping[str, Any]):
         return f"Params({', '.join(parts + [f'{name}={value!r}' for name, value in self._given.items()])})"
 
 
+def _plain(value: Any) -> Any:
+    """Numbers and arrays of NumPy as those of Python."""
+    return value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value
+
+
 ParamsLike = Union[Params, Mapping[str, Any], str, None]
 
 
@@ -53,15 +56,3 @@ def resolve(params: ParamsLike) -> dict[str, Any]:
     elif not isinstance(params, Params):
         params = Params(**params)
     return params._values
-
-
-def _read(file: str | os.PathLike[str]) -> dict[str, Any]:
-    if sys.version_info < (3, 11):
-        raise InvalidInput("file needs Python 3.11 or later: give the constants as keyword arguments", field="file")
-    import tomllib
-
-    try:
-        with open(file, "rb") as stream:
-            return tomllib.load(stream)
-    except (OSError, tomllib.TOMLDecodeError) as error:
-        raise UnreadableFile(f"{os.fspath(file)}: {error}", field="file") from error

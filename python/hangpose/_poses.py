@@ -29,8 +29,8 @@ class Placement:
 
     @staticmethod
     def of(value: Any, name: str = "pose") -> Placement:
-        """A placement from a 4 x 4 matrix, from a position and a quaternion x, y, z, w, from a placement, or of an object that
-        hangs at a pose."""
+        """A placement from a 4 x 4 matrix, from a position and a quaternion x, y, z, w, from a placement, or of an object
+        that hangs at a pose."""
         if isinstance(value, Placement):
             return value
         if isinstance(value, Pose):
@@ -216,8 +216,8 @@ class Prediction:
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """A path without collisions. Between two waypoints the centre of mass moves straight and the object turns about a fixed
-    axis."""
+    """A path without collisions. Between two waypoints the centre of mass moves straight and the object turns about a
+    fixed axis."""
 
     seconds: Matrix
     """Times of the waypoints, shape (n,)."""
@@ -233,4 +233,5 @@ class Path:
     _waypoints: dict[str, Any] = field(default_factory=dict, repr=False)
 
     def __repr__(self) -> str:
-        return f"<Path of {len(self.seconds)} waypoints, {self.seconds[-1]:.1f} s, clearance {self.clearance * 1e3:.1f} mm>"
+        count, seconds = len(self.seconds), self.seconds[-1]
+        return f"<Path of {count} waypoints, {seconds:.1f} s, clearance {self.clearance * 1e3:.1f} mm>"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from typing import Any, Callable, Iterable, Sequence
 
@@ -86,7 +85,9 @@ def predict(
         scene, hung, distinct,
     )  # fmt: skip
     if not 1 <= top <= _MOST_POSES:
-        raise InvalidInput(f"top is {top}: give 1 to {_MOST_POSES}", field="top", value=top, minimum=1, maximum=_MOST_POSES)
+        raise InvalidInput(
+            f"top is {top}: give 1 to {_MOST_POSES}", field="top", value=top, minimum=1, maximum=_MOST_POSES
+        )
     summary, native = _hangpose.predict(
         object._native, supporter._native, wishes, others, points, int(top), work_limit, progress
     )
@@ -159,9 +160,17 @@ def plan(
             return bool(chosen(_moved(rows, origin)))
 
     answer = _hangpose.plan(
-        object._native, supporter._native, _placed(release, origin), None if rest is None else _placed(rest, origin), way, wishes, others,
-        points, ask, progress,
-    )  # fmt: skip
+        object._native,
+        supporter._native,
+        _placed(release, origin),
+        None if rest is None else _placed(rest, origin),
+        way,
+        wishes,
+        others,
+        points,
+        ask,
+        progress,
+    )
     failure = answer.get("failure")
     if failure is not None:
         message, collision = failure["message"], failure["collision"]
@@ -182,9 +191,7 @@ def _written(at: Iterable[float]) -> str:
 def _check(object: Object, supporter: Supporter) -> None:
     for value, expected, name in ((object, Object, "object"), (supporter, Supporter, "supporter")):
         if not isinstance(value, expected):
-            raise InvalidInput(
-                f"{name} is a {type(value).__name__}: give a hangpose.{expected.__name__}", field=name
-            )
+            raise InvalidInput(f"{name} is a {type(value).__name__}: give a hangpose.{expected.__name__}", field=name)
     if object._shared != supporter._shared:
         raise InvalidInput("the object and the supporter have different params: give both the same", field="params")
 
@@ -289,7 +296,8 @@ def _pose(rank: int, value: dict[str, Any], origin: Matrix) -> Pose:
         unseen = Unseen(**{**unseen, **views})
         tolerance = Tolerance(**tolerance)
     contacts = tuple(
-        Contact(tuple(np.array(c["position"]) + origin), tuple(c["normal"]), c["force"]) for c in value["contacts"] or ()
+        Contact(tuple(np.array(c["position"]) + origin), tuple(c["normal"]), c["force"])
+        for c in value["contacts"] or ()
     )
     return Pose(
         rank=rank,

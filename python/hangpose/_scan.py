@@ -33,8 +33,8 @@ def scan(
     """Fuses depth images into the mesh of an object, or into the cloud of a supporter.
 
     Args:
-        depths: Images of ``uint16`` in units of ``depth_scale`` metres, or of floating-point metres, which are rounded to a
-            60000th of ``max_depth``; 0 or NaN is no depth.
+        depths: Images of ``uint16`` in units of ``depth_scale`` metres, or of floating-point metres, which are rounded to
+            a 60000th of ``max_depth``; 0 or NaN is no depth.
         intrinsics: 3 x 3 matrix of the camera.
         poses: 4 x 4 matrices from camera to world coordinates; not needed for a single image.
         masks: Images of ``uint8`` in which the object has ``label``.
@@ -46,8 +46,8 @@ def scan(
         cloud: Give points with normals instead of a mesh.
 
     Returns:
-        ``vertices``, ``triangles``, ``seen`` (0 where it was guessed) and ``viewpoints``; or ``points``, ``normals`` and
-        ``viewpoints``.
+        ``vertices``, ``triangles``, ``seen`` (0 where it was guessed) and ``viewpoints``; or ``points``, ``normals``
+        and ``viewpoints``.
     """
     if poses is None and len(depths) == 1:
         poses = [np.eye(4)]
@@ -82,8 +82,8 @@ def scan(
     agreement = found.pop("agreement")
     if agreement is not None and agreement < _FAIR_AGREEMENT:
         warnings.warn(
-            f"only {agreement:.0%} of the points of an image reappear in the next: check that poses and images are in the "
-            "same order, or that the images overlap",
+            f"only {agreement:.0%} of the points of an image reappear in the next: check that poses and images are in "
+            "the same order, or that the images overlap",
             stacklevel=2,
         )
     return found
@@ -100,7 +100,9 @@ def _depth(image: Any, index: int, scale: float, max_depth: float) -> tuple[npt.
     """The image in units, and metres a unit."""
     array = np.asarray(image)
     if array.ndim != 2:
-        raise InvalidInput(f"depths[{index}] has the shape {array.shape}: give (height, width)", field="depths", index=index)
+        raise InvalidInput(
+            f"depths[{index}] has the shape {array.shape}: give (height, width)", field="depths", index=index
+        )
     if array.dtype == np.uint16:
         return np.ascontiguousarray(array), scale
     if array.dtype.kind != "f":
@@ -110,6 +112,8 @@ def _depth(image: Any, index: int, scale: float, max_depth: float) -> tuple[npt.
             index=index,
         )
     if not max_depth > 0:
-        raise InvalidInput(f"max_depth is {max_depth}: give a positive number of metres", field="max_depth", value=max_depth)
+        raise InvalidInput(
+            f"max_depth is {max_depth}: give a positive number of metres", field="max_depth", value=max_depth
+        )
     metres = np.where(np.isfinite(array) & (array > 0), array, 0)
     return np.minimum(np.round(metres * (_UNITS / max_depth)), _MOST_UNITS).astype(np.uint16), max_depth / _UNITS

@@ -44,7 +44,9 @@ def _turn(array: npt.NDArray[_Float], up: str) -> npt.NDArray[_Float]:
 
 def _placed(array: npt.NDArray[np.float32], scale: float, up: str) -> npt.NDArray[np.float32]:
     if not (np.isfinite(scale) and scale > 0):
-        raise InvalidInput(f"scale is {scale}: give a positive number, as 0.001 for millimetres", field="scale", value=scale)
+        raise InvalidInput(
+            f"scale is {scale}: give a positive number, as 0.001 for millimetres", field="scale", value=scale
+        )
     if scale != 1.0:
         array = (array * np.float32(scale)).astype(np.float32, copy=False)
     return array if up == "z" else _turn(array, up)
@@ -120,7 +122,8 @@ class Object:
             found = _mesh_arrays(mesh)
             if found is None:
                 raise InvalidInput(
-                    f"mesh is a {type(mesh).__name__}: give a path, a mesh of trimesh or Open3D, or vertices and triangles",
+                    f"mesh is a {type(mesh).__name__}: give a path, a mesh of trimesh or Open3D, or vertices and "
+                    "triangles",
                     field="mesh",
                 )
             vertices, triangles = found
@@ -171,13 +174,13 @@ class Supporter:
     """A supporter, analysed: points and the places on which something may hang.
 
     Args:
-        cloud: A path (ply, pcd, xyz, or a mesh), a cloud or mesh of Open3D or trimesh, or an array of points. Meshes are
-            sampled.
+        cloud: A path (ply, pcd, xyz, or a mesh), a cloud or mesh of Open3D or trimesh, or an array of points. Meshes
+            are sampled.
         normals: Normals of the points, if ``cloud`` is an array of points.
         triangles: Vertex indices, if ``cloud`` is an array of the vertices of a mesh.
         params: As for the object.
-        viewpoints: Positions of the cameras that saw it, supporter frame, metres, after ``scale`` and ``up``; by default
-            what the file says.
+        viewpoints: Positions of the cameras that saw it, supporter frame, metres, after ``scale`` and ``up``; by
+            default what the file says.
         region: Box that limits the places to hang on: two corners, supporter frame.
         samples: Number of points to which a mesh is sampled, 100 to 500000.
         scale, up, progress, name: As for :class:`Object`.
@@ -226,7 +229,8 @@ class Supporter:
                 found = _cloud_arrays(cloud)
                 if found is None:
                     raise InvalidInput(
-                        f"cloud is a {type(cloud).__name__}: give a path, a cloud or mesh of Open3D or trimesh, or points",
+                        f"cloud is a {type(cloud).__name__}: give a path, a cloud or mesh of Open3D or trimesh, or "
+                        "points",
                         field="cloud",
                     )
                 mesh, (points, normals) = None, found
@@ -245,7 +249,11 @@ class Supporter:
                 self.origin = _turn_point(far * scale, up)
             points = _placed(rows(points, "points"), scale, up)
             normals = None if normals is None else _placed(rows(normals, "normals"), 1.0, up)
-        local = None if region is None else [[x - o for x, o in zip(corner, self.origin)] for corner in box(region, "region")]
+        local = (
+            None
+            if region is None
+            else [[x - o for x, o in zip(corner, self.origin)] for corner in box(region, "region")]
+        )
         if viewpoints is not None:
             local_views = rows(np.atleast_2d(numbers(viewpoints, "viewpoints")) - self.origin, "viewpoints")
         self.name = name or "supporter"

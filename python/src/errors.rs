@@ -44,7 +44,12 @@ pub(crate) fn cancelled(py: Python<'_>) -> PyErr {
 }
 
 pub(crate) fn file(py: Python<'_>, error: &FileError) -> PyErr {
-    raise(py, "UnreadableFile", &error.to_string(), Detail { field: "path", ..Detail::default() })
+    raise(py, "UnreadableFile", &error.to_string(), Detail::of("path"))
+}
+
+/// A file of constants that cannot be used.
+pub(crate) fn unreadable(py: Python<'_>, message: &str) -> PyErr {
+    raise(py, "UnreadableFile", message, Detail::of("file"))
 }
 
 pub(crate) fn params(py: Python<'_>, error: &ParamsError) -> PyErr {

@@ -18,6 +18,7 @@ mod work;
 use hangpose::Params;
 use pyo3::prelude::*;
 use pythonize::{depythonize, pythonize};
+use std::path::PathBuf;
 
 /// All constants of a profile, with `changes` to them.
 #[pyfunction]
@@ -36,6 +37,21 @@ fn params<'py>(py: Python<'py>, profile: &str, changes: &Bound<'py, PyAny>) -> P
     Ok(pythonize(py, &params)?)
 }
 
+/// The constants that a TOML file changes.
+#[pyfunction]
+fn read_params(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
+    let at = path.display();
+    let unreadable = |reason: &str| errors::unreadable(py, &format!("{at}: {reason}"));
+    let text = std::fs::read_to_string(&path)
+        .map_err(|_| unreadable("cannot be read; give a readable TOML file of constants"))?;
+    let wrong = |error: toml::de::Error| unreadable(error.to_string().trim_end());
+    // Parsed as `Params` first: these errors name the line and the valid keys.
+    let checked: Params = toml::from_str(&text).map_err(wrong)?;
+    checked.validate().map_err(|error| errors::params(py, &error))?;
+    let table: toml::Table = text.parse().map_err(wrong)?;
+    Ok(pythonize(py, &table)?)
+}
+
 #[pymodule]
 fn _hangpose(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
@@ -43,6 +59,7 @@ fn _hangpose(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<models::NativeSupporter>()?;
     module.add_class::<predict::NativePrediction>()?;
     module.add_function(wrap_pyfunction!(params, module)?)?;
+    module.add_function(wrap_pyfunction!(read_params, module)?)?;
     module.add_function(wrap_pyfunction!(files::read_mesh, module)?)?;
     module.add_function(wrap_pyfunction!(files::read_supporter, module)?)?;
     module.add_function(wrap_pyfunction!(files::sample, module)?)?;

@@ -16,7 +16,7 @@ from conftest import SAMPLES, same
 PATIENT = hangpose.Params(settle_attempts=10_000, firm_enough=10_000, time_step=0.0005)
 """Constants with which a prediction takes minutes."""
 SOON = 1.0
-"""Within this time a call ends that was told to, seconds. Hardly more than 20 ms on a machine that does nothing else."""
+"""Within this time a call ends that was told to, seconds. About 20 ms where nothing else runs."""
 
 
 @pytest.fixture(scope="module")

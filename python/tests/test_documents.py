@@ -47,15 +47,16 @@ def test_everything_public_is_documented() -> None:
 
 def test_the_stubs_agree_with_the_native_part() -> None:
     pytest.importorskip("mypy")
-    done = subprocess.run(
-        [sys.executable, "-m", "mypy.stubtest", "hangpose._hangpose"], capture_output=True, text=True
-    )
+    done = subprocess.run([sys.executable, "-m", "mypy.stubtest", "hangpose._hangpose"], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_types() -> None:
     pytest.importorskip("mypy")
     done = subprocess.run(
-        [sys.executable, "-m", "mypy", "--strict", "-p", "hangpose"], capture_output=True, text=True, cwd=ROOT / "python"
+        [sys.executable, "-m", "mypy", "--strict", "-p", "hangpose"],
+        capture_output=True,
+        text=True,
+        cwd=ROOT / "python",
     )
     assert done.returncode == 0, done.stdout

@@ -37,7 +37,9 @@ def test_the_notebook_runs_and_shows_pages() -> None:
     notebook = nbformat.read(EXAMPLES / "hang.ipynb", as_version=4)
     client = nbclient.NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(EXAMPLES)}})
     client.execute()
-    shown: list[Any] = [cell["outputs"][-1]["data"] for cell in notebook.cells if cell.get("outputs") and "data" in cell["outputs"][-1]]
+    shown: list[Any] = [
+        cell["outputs"][-1]["data"] for cell in notebook.cells if cell.get("outputs") and "data" in cell["outputs"][-1]
+    ]
     pages = [data["text/html"] for data in shown if "text/html" in data]
     assert len(pages) == 2 and all(page.startswith("<iframe srcdoc=") for page in pages)
     # The second has the path.

@@ -64,7 +64,10 @@ def test_trimesh(prediction: hangpose.Prediction, hook: hangpose.Supporter, hook
     sampled = hangpose.Supporter(trimesh.load(SAMPLES / "hook.obj", process=False))
     assert same(hangpose.predict(hangpose.Object(mesh), sampled), of_file)
     cloud = hangpose.Supporter(trimesh.PointCloud(hook_arrays[0]))
-    assert same(hangpose.predict(hangpose.Object(mesh), cloud), hangpose.predict(hangpose.Object(mesh), hangpose.Supporter(hook_arrays[0])))
+    assert same(
+        hangpose.predict(hangpose.Object(mesh), cloud),
+        hangpose.predict(hangpose.Object(mesh), hangpose.Supporter(hook_arrays[0])),
+    )
     with pytest.raises(hangpose.InvalidInput, match="Scene"):
         hangpose.Object(trimesh.Scene(mesh))
 
@@ -244,9 +247,7 @@ def test_plans(prediction: hangpose.Prediction, options: dict[str, Any], field: 
 def test_no_path_says_what_collides(prediction: hangpose.Prediction) -> None:
     assert prediction.best is not None
     with pytest.raises(hangpose.NoPath, match="start is in collision") as caught:
-        hangpose.plan(
-            prediction.object, prediction.supporter, prediction.best, start=((0.04, 0, -0.04), (0, 0, 0, 1))
-        )
+        hangpose.plan(prediction.object, prediction.supporter, prediction.best, start=((0.04, 0, -0.04), (0, 0, 0, 1)))
     error = caught.value
     assert error.reason == "start_in_collision" and error.collision["obstacle"] == "supporter"
     assert error.collision["distance"] < 0 and len(error.collision["at"]) == 3
@@ -268,6 +269,20 @@ def test_files_that_cannot_be_read(tmp_path: Any) -> None:
     with pytest.raises(hangpose.UnreadableFile, match="cut off") as caught:
         hangpose.Supporter(str(cut))
     assert isinstance(caught.value, OSError) and caught.value.field == "path"
+    constants = tmp_path / "params.toml"
+    for text, message in [
+        ("friction = 0.5\nfrictio = 0.5\n", "line 2"),
+        ("friction =", "line 1"),
+        (None, "cannot be read"),
+    ]:
+        constants.unlink(missing_ok=True)
+        if text is not None:
+            constants.write_text(text)
+        with pytest.raises(hangpose.UnreadableFile, match=message):
+            hangpose.Params(file=constants)
+    constants.write_text("friction = 7\n")
+    with pytest.raises(hangpose.InvalidInput, match="friction = 7 is outside its range"):
+        hangpose.Params(file=constants)
     assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
 
 

@@ -36,6 +36,12 @@ def test_text(prediction: hangpose.Prediction, mug: hangpose.Object, hook: hangp
     assert "<Pose 2" in repr(prediction)
 
 
+def test_constants_of_numpy_are_those_of_python() -> None:
+    given = hangpose.Params(friction=np.float32(0.3), samples=np.int64(5000), gravity=np.array([0, 1, 0]))
+    assert dict(given) == dict(hangpose.Params(friction=0.3, samples=5000, gravity=[0, 1, 0]))
+    assert given["friction"] == 0.3 and len(given) == len(hangpose.Params())
+
+
 def test_results_are_pickled(prediction: hangpose.Prediction) -> None:
     again = pickle.loads(pickle.dumps(prediction))
     assert same(again, prediction) and again.object is None and again.supporter is None

@@ -77,7 +77,9 @@ PAIRS = [
 
 @pytest.mark.parametrize(("thing", "holder", "options", "arguments"), PAIRS)
 def test_predictions(command: Command, thing: str, holder: str, options: dict[str, Any], arguments: list[Any]) -> None:
-    printed = command("predict", "--object", SAMPLES / thing, "--supporter", SAMPLES / holder, "--json", "-", *arguments)
+    printed = command(
+        "predict", "--object", SAMPLES / thing, "--supporter", SAMPLES / holder, "--json", "-", *arguments
+    )
     found = hangpose.predict(hangpose.Object(SAMPLES / thing), hangpose.Supporter(SAMPLES / holder), **options)
     if not printed["poses"]:
         assert found.rejection is not None and not found.poses and found.best is None
@@ -151,9 +153,7 @@ opening = [0, 0.015, 0]
 
 
 @pytest.mark.parametrize("has_gripper", [False, True])
-def test_paths(
-    command: Command, tmp_path: Path, prediction: hangpose.Prediction, has_gripper: bool
-) -> None:
+def test_paths(command: Command, tmp_path: Path, prediction: hangpose.Prediction, has_gripper: bool) -> None:
     gripper, start = tmp_path / "gripper.toml", SAMPLES / "mug_start.json"
     gripper.write_text(GRIPPER_FILE)
     files = ("--object", SAMPLES / "mug.obj", "--supporter", SAMPLES / "hook.ply")
@@ -245,9 +245,7 @@ def test_scans(command: Command, tmp_path: Path, mode: str) -> None:
         "--depth-scale", 0.0001, "-o", out, *options,
     )  # fmt: skip
     numbers, corners = columns(out)
-    found = hangpose.scan(
-        images, CAMERA, poses, depth_scale=0.0001, complete=mode == "complete", cloud=mode == "cloud"
-    )
+    found = hangpose.scan(images, CAMERA, poses, depth_scale=0.0001, complete=mode == "complete", cloud=mode == "cloud")
     if mode == "cloud":
         np.testing.assert_array_equal(np.hstack([found["points"], found["normals"]]), numbers)
     else:
