@@ -10,11 +10,11 @@ Lengths are in metres. A pose maps object coordinates to supporter coordinates, 
 
 from ._hangpose import __version__
 from ._params import Params
-from ._poses import Contact, Margin, Path, Placement, Pose, Prediction, Rejection, Tolerance, Unseen
+from ._poses import Contact, Margin, Path, Placement, Pose, Rejection, Tolerance, Unseen
 from ._predict import Capsule, Gripper, plan, predict
+from ._prediction import Prediction, view
 from ._scan import scan
 from ._shapes import Object, Supporter
-from ._view import view
 from .errors import Cancelled, HangposeError, InvalidInput, NoPath, UnreadableFile
 
 __all__ = [

@@ -1,17 +1,14 @@
-"""Poses, predictions and paths."""
+"""Poses and paths."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from .errors import InvalidInput
-
-if TYPE_CHECKING:
-    from ._shapes import Object, Supporter
 
 Matrix = npt.NDArray[np.float64]
 
@@ -179,39 +176,6 @@ class Rejection:
     """The first step that left nothing."""
     reason: str
     """The same in words."""
-
-
-@dataclass(frozen=True, eq=False)
-class Prediction:
-    """What :func:`hangpose.predict` found. In a notebook it shows itself."""
-
-    poses: list[Pose]
-    """Best first."""
-    rejection: Rejection | None
-    """Why there are none."""
-    stopped: str | None
-    """``"work_limit"`` if the work limit ended the search; the poses are the best found until then."""
-    counts: dict[str, int]
-    """Candidates that were released, and what became of them: ``settling`` in the JSON of the command."""
-    object: Object | None = field(repr=False)
-    """``None`` in a prediction that was pickled."""
-    supporter: Supporter | None = field(repr=False)
-    paths: dict[int, Path] = field(default_factory=dict, repr=False)
-    """Paths of :func:`hangpose.plan`, by rank, for the page."""
-    _native: Any = field(default=None, repr=False)
-
-    @property
-    def best(self) -> Pose | None:
-        """The best pose, or ``None`` if nothing hangs."""
-        return self.poses[0] if self.poses else None
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "object": None, "supporter": None, "_native": None}
-
-    def _repr_html_(self) -> str:
-        from ._view import frame
-
-        return frame(self)
 
 
 @dataclass(frozen=True, eq=False)

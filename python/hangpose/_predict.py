@@ -9,7 +9,8 @@ import numpy as np
 
 from . import _hangpose
 from ._arrays import box, numbers, rows, vector
-from ._poses import Contact, Margin, Matrix, Path, Placement, Pose, Prediction, Rejection, Tolerance, Unseen
+from ._poses import Contact, Margin, Matrix, Path, Placement, Pose, Rejection, Tolerance, Unseen
+from ._prediction import Prediction
 from ._shapes import Object, Progress, Supporter
 from .errors import InvalidInput, NoPath
 

@@ -4,13 +4,13 @@ use crate::models::{NativeObject, NativeSupporter};
 use crate::predict::placed;
 use crate::request::{Placed, Wishes};
 use crate::{arrays, errors, work};
+use hangpose::Monitor;
 use hangpose::geometry::{Aabb, Pose};
 use hangpose::hanging::{HangingPose, Rest};
 use hangpose::memory::Limits;
 use hangpose::motion::{
     self, Capsule, Collision, Gripper, Motion, Mover, Obstacle, PlanFailure, Task, Waypoint, plan_bytes,
 };
-use hangpose::{Monitor, Stop};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use pythonize::{depythonize, pythonize};
@@ -148,19 +148,7 @@ fn answer_of(path: Result<&motion::Path, &PlanFailure>) -> Value {
 }
 
 fn failure_of(failure: &PlanFailure) -> Value {
-    let (reason, collision) = match failure {
-        PlanFailure::GoalInCollision(collision) => ("goal_in_collision", Some(collision)),
-        PlanFailure::StartInCollision(collision) => ("start_in_collision", Some(collision)),
-        PlanFailure::GoalOutsideWorkspace => ("goal_outside_workspace", None),
-        PlanFailure::StartOutsideWorkspace => ("start_outside_workspace", None),
-        PlanFailure::Enclosed { .. } => ("enclosed", None),
-        PlanFailure::BudgetUsedUp { .. } => ("budget_used_up", None),
-        PlanFailure::TreesFull { .. } => ("trees_full", None),
-        PlanFailure::GripperCannotOpen(collision) => ("gripper_cannot_open", Some(collision)),
-        PlanFailure::GripperCannotLeave => ("gripper_cannot_leave", None),
-        PlanFailure::Stopped(Stop::Cancelled | Stop::WorkLimit) => ("stopped", None),
-    };
-    let collision = collision.map(|&Collision { mover, obstacle, at, distance }| {
+    let collision = failure.collision().map(|&Collision { mover, obstacle, at, distance }| {
         let part = match mover {
             Mover::Object => None,
             Mover::Gripper(part) => Some(part),
@@ -173,5 +161,5 @@ fn failure_of(failure: &PlanFailure) -> Value {
         };
         json!({ "part": part, "obstacle": obstacle, "index": index, "at": at, "distance": distance })
     });
-    json!({ "reason": reason, "message": failure.to_string(), "collision": collision })
+    json!({ "reason": failure.name(), "message": failure.to_string(), "collision": collision })
 }

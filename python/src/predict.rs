@@ -4,7 +4,7 @@ use crate::models::{NativeObject, NativeSupporter};
 use crate::request::Wishes;
 use crate::{arrays, errors, work};
 use hangpose::geometry::Pose;
-use hangpose::hanging::{Counts, HangingPose, Rejection, Request, SettlingCounts, Watch};
+use hangpose::hanging::{Counts, HangingPose, Rejection, Request, Watch};
 use hangpose::mechanics::Fate;
 use hangpose::{Monitor, predict_poses};
 use numpy::PyReadonlyArray2;
@@ -74,47 +74,11 @@ pub(crate) fn predict<'py>(
             hangpose::Stop::Cancelled => "cancelled".into(),
             hangpose::Stop::WorkLimit => "work_limit".into(),
         }),
-        counts: counts_of(&counts),
+        counts: json!(counts.settling),
     };
     let released = released.into_inner().unwrap_or_else(PoisonError::into_inner);
     let native = NativePrediction { poses, rejection, counts, released, scene };
     Ok((pythonize(py, &summary)?, native))
-}
-
-/// As `settling` in the JSON of the command.
-fn counts_of(counts: &Counts) -> Value {
-    let SettlingCounts {
-        released,
-        rotated_off,
-        slid_off,
-        moving,
-        at_rest,
-        wedged,
-        unseen,
-        probable,
-        firm,
-        firm_as_preferred,
-        in_scene,
-        outside,
-        other_kind,
-        no_approach,
-    } = counts.settling;
-    json!({
-        "released": released,
-        "rotated_off": rotated_off,
-        "slid_off": slid_off,
-        "moving": moving,
-        "at_rest": at_rest,
-        "wedged": wedged,
-        "unseen": unseen,
-        "probable": probable,
-        "firm": firm,
-        "firm_as_preferred": firm_as_preferred,
-        "in_scene": in_scene,
-        "outside": outside,
-        "other_kind": other_kind,
-        "no_approach": no_approach,
-    })
 }
 
 pub(crate) fn placed(pose: &Pose) -> Value {

@@ -75,6 +75,34 @@ pub enum Obstacle {
     Object,
 }
 
+impl PlanFailure {
+    /// The name of the reason, in snake_case.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::GoalInCollision(_) => "goal_in_collision",
+            Self::StartInCollision(_) => "start_in_collision",
+            Self::GoalOutsideWorkspace => "goal_outside_workspace",
+            Self::StartOutsideWorkspace => "start_outside_workspace",
+            Self::Enclosed { .. } => "enclosed",
+            Self::BudgetUsedUp { .. } => "budget_used_up",
+            Self::TreesFull { .. } => "trees_full",
+            Self::GripperCannotOpen(_) => "gripper_cannot_open",
+            Self::GripperCannotLeave => "gripper_cannot_leave",
+            Self::Stopped(_) => "stopped",
+        }
+    }
+
+    /// What collides with what, if that is the reason.
+    pub fn collision(&self) -> Option<&Collision> {
+        match self {
+            Self::GoalInCollision(collision)
+            | Self::StartInCollision(collision)
+            | Self::GripperCannotOpen(collision) => Some(collision),
+            _ => None,
+        }
+    }
+}
+
 impl fmt::Display for Mover {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

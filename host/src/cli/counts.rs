@@ -40,20 +40,8 @@ struct MatchingCounts {
 struct SettlingCounts {
     candidates: usize,
     clear: usize,
-    released: usize,
-    rotated_off: usize,
-    slid_off: usize,
-    moving: usize,
-    at_rest: usize,
-    wedged: usize,
-    unseen: usize,
-    probable: usize,
-    firm: usize,
-    firm_as_preferred: usize,
-    in_scene: usize,
-    outside: usize,
-    other_kind: usize,
-    no_approach: usize,
+    #[serde(flatten)]
+    settling: hanging::SettlingCounts,
 }
 
 impl From<&hanging::Counts> for Counts {
@@ -68,40 +56,8 @@ impl From<&hanging::Counts> for Counts {
                 (object.into(), supporter.into(), MatchingCounts::default(), candidates)
             }
         };
-        let hanging::SettlingCounts {
-            released,
-            rotated_off,
-            slid_off,
-            moving,
-            at_rest,
-            wedged,
-            unseen,
-            probable,
-            firm,
-            firm_as_preferred,
-            in_scene,
-            outside,
-            other_kind,
-            no_approach,
-        } = counts.settling;
-        let settling = SettlingCounts {
-            candidates: candidates.made,
-            clear: candidates.clear,
-            released,
-            rotated_off,
-            slid_off,
-            moving,
-            at_rest,
-            wedged,
-            unseen,
-            probable,
-            firm,
-            firm_as_preferred,
-            in_scene,
-            outside,
-            other_kind,
-            no_approach,
-        };
+        let contacts::CandidateCounts { made: candidates, clear } = candidates;
+        let settling = SettlingCounts { candidates, clear, settling: counts.settling };
         Self { hangability, supportability, matching, settling }
     }
 }

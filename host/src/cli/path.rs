@@ -74,19 +74,11 @@ impl From<&motion::Waypoint> for Waypoint {
 impl Failure {
     /// The failure in a cloud at `origin`.
     pub(super) fn new(failure: &PlanFailure, origin: [f64; 3]) -> Self {
-        let (reason, collision) = match failure {
-            PlanFailure::GoalInCollision(collision) => ("goal_in_collision", Some(collision)),
-            PlanFailure::StartInCollision(collision) => ("start_in_collision", Some(collision)),
-            PlanFailure::GoalOutsideWorkspace => ("goal_outside_workspace", None),
-            PlanFailure::StartOutsideWorkspace => ("start_outside_workspace", None),
-            PlanFailure::Enclosed { .. } => ("enclosed", None),
-            PlanFailure::BudgetUsedUp { .. } => ("budget_used_up", None),
-            PlanFailure::TreesFull { .. } => ("trees_full", None),
-            PlanFailure::GripperCannotOpen(collision) => ("gripper_cannot_open", Some(collision)),
-            PlanFailure::GripperCannotLeave => ("gripper_cannot_leave", None),
-            PlanFailure::Stopped(_) => ("stopped", None),
-        };
-        Self { reason, message: message(failure, origin), collision: collision.map(Hit::from) }
+        Self {
+            reason: failure.name(),
+            message: message(failure, origin),
+            collision: failure.collision().map(Hit::from),
+        }
     }
 }
 
@@ -114,12 +106,7 @@ pub(super) fn message(failure: &PlanFailure, origin: [f64; 3]) -> String {
         }
         failure => failure.to_string(),
     };
-    let (PlanFailure::GoalInCollision(collision)
-    | PlanFailure::StartInCollision(collision)
-    | PlanFailure::GripperCannotOpen(collision)) = failure
-    else {
-        return text;
-    };
+    let Some(collision) = failure.collision() else { return text };
     // The core says where in the coordinates of the cloud.
     let written = |[x, y, z]: [f64; 3]| format!("({x:.3}, {y:.3}, {z:.3})");
     let at = collision.at.map(f64::from);

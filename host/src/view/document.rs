@@ -197,13 +197,7 @@ pub(super) fn document(scene: &Scene) -> Result<Value, PredictError> {
         "gripper": scene.gripper.as_ref().map(gripper_json),
         "poses": poses,
         "fallen": fallen,
-        "counts": scene.counts.map(|counts| json!({
-            "released": counts.settling.released,
-            "at_rest": counts.settling.at_rest,
-            "rotated_off": counts.settling.rotated_off,
-            "slid_off": counts.settling.slid_off,
-            "moving": counts.settling.moving,
-        })),
+        "counts": scene.counts.map(|counts| counts.settling),
         "rejection": scene.rejection.map(|rejection| {
             json!({ "stage": rejection.stage, "reason": rejection.stage.to_string() })
         }),

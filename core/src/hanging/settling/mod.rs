@@ -26,6 +26,7 @@ use wishes::is_clear_of_scene;
 
 /// What became of the poses that were released.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SettlingCounts {
     /// Poses that were released.
     pub released: usize,
