@@ -50,8 +50,8 @@ test_rust:
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
-	cargo run -p host-tests --example samples -- --check
-	cargo run -p hangpose-ffi --example header -- --check
+	$(target_dir)/debug/examples/samples --check
+	$(target_dir)/debug/examples/header --check
 
 test_c:
 	scripts/bare-metal.sh

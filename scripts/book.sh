@@ -15,7 +15,7 @@ fi
 export PATH=$root/$tools/bin:$PATH MPLBACKEND=svg
 
 if [ -z "${HANGPOSE:-}" ]; then
-    cargo build --quiet -p hangpose
+    scripts/built.sh
     HANGPOSE=${CARGO_TARGET_DIR:-$root/target}/debug/hangpose
 fi
 export HANGPOSE

@@ -19,8 +19,9 @@ quiet() { "$@" >"$log" 2>&1 || { cat "$log" >&2; fail "failed: $*"; }; }
 cp -r "$root/examples-c" "$root/ffi/tests" "$root/samples" .
 # The command of the tests stands for the one that `make command` builds with the same sources and more optimisation.
 target=${CARGO_TARGET_DIR:-$root/target}
-quiet cargo build --manifest-path "$root/Cargo.toml" -p hangpose
-quiet make -C "$root" lib command install COMMAND="$target/debug/hangpose" DESTDIR="$here/root" PREFIX=/opt/hangpose
+quiet make -C "$root" lib
+quiet "$root/scripts/built.sh"
+quiet make -C "$root" command install COMMAND="$target/debug/hangpose" DESTDIR="$here/root" PREFIX=/opt/hangpose
 prefix=$here/root/opt/hangpose
 archive=$prefix/lib/libhangpose.a
 shared=$prefix/lib/libhangpose.so
@@ -144,7 +145,7 @@ done
 
 # ---- the C call, in C memory, gives the same bits as the Rust call
 mkdir pairs
-quiet cargo run --manifest-path "$root/Cargo.toml" -p hangpose-ffi --example pairs -- pairs
+quiet "$target/debug/examples/pairs" pairs
 quiet gcc -std=c11 -O2 $flags tests/c/pairs.c $static_libs -o compare
 quiet ./compare pairs/*.bin
 say "$(cat quiet.log)"

@@ -11,9 +11,8 @@ if ! cmp -s python/tests/requirements.txt $venv/requirements.txt; then
     cp python/tests/requirements.txt $venv/requirements.txt
 fi
 
-# The same crates with the same features as `cargo test --workspace`, so that nothing is compiled twice. The wheel is built
-# by maturin: scripts/wheel.sh.
-cargo build --quiet --workspace --lib --bins --tests
+# The wheel is built by maturin: scripts/wheel.sh.
+scripts/built.sh
 target=$(cargo metadata --format-version 1 --no-deps |
     $venv/bin/python -c 'import json, sys; print(json.load(sys.stdin)["target_directory"])')
 site=$($venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
