@@ -41,7 +41,6 @@ picture: demo
 # Two lanes for two processors. The book comes last: its commands are those of the lanes, and its Python the module.
 test: setup
 	$(MAKE) --no-print-directory --jobs=2 --output-sync=target test_rust test_c
-	scripts/slurm_test.sh
 	scripts/python.sh
 	scripts/book.sh
 
@@ -59,6 +58,7 @@ test_c:
 	scripts/colcon.sh
 	scripts/packages.sh
 	scripts/viewer.sh
+	scripts/slurm_test.sh
 
 book: setup
 	scripts/book.sh
