@@ -3,7 +3,7 @@
 use crate::geometry::{Cloud, Mesh};
 use meshopt::{SimplifyOptions, VertexDataAdapter};
 
-/// Most triangles of a mesh that is shown: 0.7 MB in the page, and an edge of about 1 mm on a mug.
+/// Most triangles of a mesh that is shown: 0.7 MB in the page, and an edge of about 2 mm on a mug.
 const MAX_TRIANGLES: usize = 30_000;
 /// Most points of a cloud that are shown, with normals: 1 MB in the page.
 pub(super) const MAX_POINTS: usize = 30_000;

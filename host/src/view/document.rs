@@ -17,7 +17,7 @@ use serde_json::{Map, Value, json};
 const SCHEMA: u32 = 1;
 /// Most sample points of the object that are shown.
 const MAX_SAMPLES: usize = 3_000;
-/// Most candidates that fell that are shown, with how they fell: 20 kB each.
+/// Most candidates that fell that are shown, with how they fell: 10 kB at most for four seconds.
 const MAX_FALLEN: usize = 40;
 
 /// A pose that is shown, with all that is known of it.

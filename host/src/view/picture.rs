@@ -26,6 +26,8 @@ const BACKGROUND: Colour = [1.0; 3];
 
 /// Margin around what is seen, as a share of its larger side.
 const MARGIN: f32 = 0.04;
+/// Least margin, metres: what is seen may be a single point.
+const LEAST_MARGIN: f32 = 0.001;
 /// Rays for each pixel along each of its sides.
 const FINE: u32 = 2;
 /// Share of its opacity by which a translucent body hides an opaque one, so that this keeps its colour.
@@ -168,12 +170,13 @@ impl<'a> Picture<'a> {
     /// The picture, so many pixels wide.
     pub fn pixels(&self, width: u32) -> Pixels {
         let frame = self.frame();
-        let pixel = (frame.high[0] - frame.low[0]) / width as f32;
-        let height =
-            ((frame.high[1] - frame.low[1]) / pixel).ceil().clamp(1.0, MAX_HEIGHT * width as f32) as u32;
+        let [wide, high] = [0, 1].map(|i| frame.high[i] - frame.low[i]);
+        let pixel = (wide / width as f32).max(high / (MAX_HEIGHT * width as f32));
+        let height = ((high / pixel).ceil() as u32).max(1);
+        let left = frame.low[0] - 0.5 * (pixel * width as f32 - wide);
         let on_picture = |point: &Point| {
             let [u, v] = self.camera.seen_at(math::Vector::from_array((*point).into()));
-            [(u - frame.low[0]) / pixel, (frame.high[1] - v) / pixel]
+            [(u - left) / pixel, (frame.high[1] - v) / pixel]
         };
         let lines: Vec<(Vec<[f32; 2]>, Colour)> = self
             .lines
@@ -196,9 +199,8 @@ impl<'a> Picture<'a> {
                 for k in 0..FINE * FINE {
                     let at = [(x, k % FINE), (y, k / FINE)]
                         .map(|(whole, part)| whole as f32 + (part as f32 + 0.5) / FINE as f32);
-                    let seen = drawn_at(at).unwrap_or_else(|| {
-                        self.colour(frame.low[0] + at[0] * pixel, frame.high[1] - at[1] * pixel)
-                    });
+                    let seen = drawn_at(at)
+                        .unwrap_or_else(|| self.colour(left + at[0] * pixel, frame.high[1] - at[1] * pixel));
                     sum = [0, 1, 2].map(|i| sum[i] + seen[i]);
                 }
                 rgb.extend(sum.map(|c| (255.0 * c / (FINE * FINE) as f32) as u8));
@@ -228,7 +230,7 @@ impl<'a> Picture<'a> {
             include(math::Vector::from_array(point.into()));
         }
         let Frame { low, high } = frame;
-        let margin = MARGIN * (high[0] - low[0]).max(high[1] - low[1]);
+        let margin = (MARGIN * (high[0] - low[0]).max(high[1] - low[1])).max(LEAST_MARGIN);
         Frame { low: low.map(|x| x - margin), high: high.map(|x| x + margin) }
     }
 

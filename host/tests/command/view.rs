@@ -180,6 +180,18 @@ fn colours(path: &Path) -> Vec<[u8; 3]> {
 }
 
 #[test]
+fn a_single_point_and_a_tall_pole_have_a_picture() {
+    let scene = Scene::new();
+    let pole: String = (0..2000).map(|k| format!("0 0 {}\n", 0.001 * f64::from(k))).collect();
+    for points in ["0 0 0\n", &pole] {
+        let (cloud, picture) = (scene.write("points.xyz", points), scene.path("picture.png"));
+        let run = run!("predict", "--object", scene.ball, "--supporter", cloud, "--png", picture);
+        assert_eq!(run.status, Some(3), "{}", run.stderr);
+        assert!(colours(&picture).iter().any(|colour| *colour != [255; 3]));
+    }
+}
+
+#[test]
 fn the_picture_shows_object_and_supporter() {
     let scene = Scene::new();
     let picture = scene.path("picture.png");
