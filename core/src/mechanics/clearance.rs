@@ -75,7 +75,7 @@ fn first_hit(
     let hit_of_patch = |patch: usize| {
         let (position, patch) = (support.position(patch), &support.patches[patch]);
         let at = to_object * position;
-        if let Ok(nearest) = nearest_on_patch(body, patch, &rotation, &at, -PATCH_PENETRATION)
+        if let Ok(nearest) = nearest_on_patch(body, patch, &rotation, &at, |_| -PATCH_PENETRATION)
             && nearest.gap < -PATCH_PENETRATION
         {
             return Some(pose * nearest.at);

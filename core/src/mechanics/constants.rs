@@ -302,7 +302,7 @@ pub(super) const STRIDE_REDUCTION: f32 = 0.3;
 /// Step below which the refinement on the mesh has converged, m.
 ///
 /// Larger: less exact contacts. Smaller: more queries of the mesh. Chosen by hand.
-pub(super) const REFINEMENT_TOLERANCE: f32 = 1e-5;
+pub(super) const REFINEMENT_TOLERANCE: f32 = 3e-5;
 /// Minimum curvature of a patch in the refinement on the mesh, 1/m: without it the step on a flat patch is
 /// infinite.
 ///

@@ -39,7 +39,7 @@ pub(crate) fn gap_to_patch(
             return Gap::Beyond(least.max(bound - 0.5 * patch.reach()).max(FIELD_BAND_RATIO * field.band()));
         }
     }
-    match nearest_on_patch(body, patch, rotation, at, margin) {
+    match nearest_on_patch(body, patch, rotation, at, |_| margin) {
         Ok(nearest) => Gap::Near { distance: nearest.gap, at: nearest.at, gradient: nearest.gradient },
         Err(_) => Gap::Beyond((field.distance(at) - patch.reach()).max(FIELD_BAND_RATIO * field.band())),
     }

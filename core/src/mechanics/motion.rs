@@ -57,7 +57,7 @@ impl Settings {
     /// Gap below which a contact is kept, metres: [`CONTACT_MARGIN`], and the distance that gravity closes
     /// from rest in three steps, `g (3 dt)² / 2`. That is one step more than contacts are used for.
     fn contact_margin(&self) -> f32 {
-        CONTACT_MARGIN + 4.5 * self.time_step * self.time_step * GRAVITY
+        CONTACT_MARGIN + 2.0 * self.time_step * self.time_step * GRAVITY
     }
 }
 

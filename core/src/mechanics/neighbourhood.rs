@@ -10,6 +10,7 @@ use super::{Body, Support};
 use crate::geometry::{Point, Vector};
 use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
+use nalgebra::Rotation3;
 
 /// Sleep of a patch or a group of patches: the distance that the body must travel before it can touch it.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
@@ -23,13 +24,16 @@ pub(crate) struct Sleep {
 }
 
 impl Sleep {
-    /// Converts the sleep from the odometer `before` to `now`, which starts at zero. The patches are within
-    /// `extent` metres of `centre`.
-    fn restart(&mut self, before: &Odometer, now: &Odometer, state: &State, centre: &Point, extent: f32) {
+    /// Converts the sleep from the odometer `before` to one that starts at zero with its pivot at `pivot`. The patches are
+    /// within `extent` metres of `centre`.
+    fn restart(&mut self, before: &Odometer, pivot: &Point, centre: &Point, extent: f32) {
         let left = self.until - before.reading(self.radius);
-        *self = Self { radius: now.radius(state, centre) + extent + PIVOT_TRAVEL, until: left };
+        *self = Self { radius: (centre - pivot).norm() + extent + PIVOT_TRAVEL, until: left };
     }
 }
+
+/// [`Sleep::until`] of a group of which a patch is near the body.
+const OPEN: f32 = f32::NEG_INFINITY;
 
 /// State of the search for contacts.
 pub(crate) struct Neighbourhood<'s> {
@@ -47,7 +51,7 @@ pub(crate) struct Neighbourhood<'s> {
 impl<'s> Neighbourhood<'s> {
     /// Starts with all patches awake. `sleeps` is working memory of [`Support::sleepers`] elements.
     pub(crate) fn new(sleeps: &'s mut [Sleep]) -> Self {
-        sleeps.fill(Sleep { radius: 0.0, until: f32::NEG_INFINITY });
+        sleeps.fill(Sleep::default());
         let odometer = Odometer::new(Vector::zeros());
         Self { sleeps, odometer, is_pivot_at_contacts: None, carries_left: 0, carry_limit: -1.0 }
     }
@@ -69,12 +73,13 @@ impl<'s> Neighbourhood<'s> {
         let before =
             core::mem::replace(&mut self.odometer, Odometer::new(anchors / contacts.len().max(1) as f32));
         self.is_pivot_at_contacts = Some(!contacts.is_empty());
+        let pivot = self.odometer.pivot(state);
         let (patches, groups) = self.sleeps.split_at_mut(support.patches.len());
         for (sleep, position) in patches.iter_mut().zip(support.positions()) {
-            sleep.restart(&before, &self.odometer, state, &position, 0.0);
+            sleep.restart(&before, &pivot, &position, 0.0);
         }
         for (sleep, group) in groups.iter_mut().zip(support.groups) {
-            sleep.restart(&before, &self.odometer, state, &group.centre, group.radius);
+            sleep.restart(&before, &pivot, &group.centre, group.radius);
         }
         self.carries_left = 0;
     }
@@ -110,50 +115,92 @@ impl<'s> Neighbourhood<'s> {
         let closing = |speed: f32| (speed * horizon).min(CARRY_TRAVEL + speed * time_step);
         self.carries_left = CARRIED_STEPS;
         self.carry_limit = self.odometer.reading(whole) + CARRY_TRAVEL;
-        contacts.clear();
+        let search = Search { scene, state, rotation: &rotation, margin, closing: &closing };
         let mut queries = 0;
+        contacts.clear();
         let (patches, groups) = self.sleeps.split_at_mut(support.patches.len());
         for (group, group_sleep) in support.groups.iter().zip(groups) {
             let reading = self.odometer.reading(group_sleep.radius);
             if group_sleep.until > reading {
                 continue;
             }
-            let arm = group.centre - state.centre;
-            let speed = state.velocity_at(&arm).norm() + state.spin.norm() * group.radius;
-            let reach = group.radius + margin + closing(speed);
-            let at = body.centre + rotation.inverse_transform_vector(&arm);
-            queries += 1;
-            let distance = body.field.distance(&at);
-            if distance > reach {
-                group_sleep.until = reading + distance - reach;
-                continue;
+            if group_sleep.until != OPEN {
+                let arm = group.centre - state.centre;
+                let speed = state.velocity_at(&arm).norm() + state.spin.norm() * group.radius;
+                let reach = group.radius + margin + closing(speed);
+                let at = body.centre + rotation.inverse_transform_vector(&arm);
+                queries += 1;
+                let distance = body.field.distance(&at);
+                if distance > reach {
+                    group_sleep.until = reading + distance - reach;
+                    continue;
+                }
             }
+            // Distance that the body must travel before the first patch of the group is searched again.
+            let mut slack = f32::INFINITY;
             for index in group.patches() {
                 let sleep = &mut patches[index];
                 let reading = self.odometer.reading(sleep.radius);
                 if sleep.until > reading {
+                    slack = slack.min(sleep.until - reading);
                     continue;
                 }
-                let arm = support.position(index) - state.centre;
-                // A point near the pivot hardly moves, however fast the rest of the body does.
-                let margin = margin + closing(state.velocity_at(&arm).norm());
-                let at = body.centre + rotation.inverse_transform_vector(&arm);
                 queries += 1;
-                match nearest_on_patch(body, &support.patches[index], &rotation, &at, margin) {
-                    Err(travel) => sleep.until = reading + travel,
-                    Ok(nearest) => {
-                        queries += 1;
-                        if nearest.gap <= margin
-                            && let Some(contact) = Contact::new(scene, state, index, &nearest)
-                        {
+                match search.nearest(index) {
+                    Err(travel) => {
+                        sleep.until = reading + travel;
+                        slack = slack.min(travel);
+                    }
+                    Ok(contact) => {
+                        slack = 0.0;
+                        if let Some(contact) = contact {
+                            queries += 1;
                             add_contact(contacts, contact);
                         }
                     }
                 }
             }
+            group_sleep.until = if slack > 0.0 { reading + slack } else { OPEN };
         }
         queries += contacts.len();
         contacts.retain_mut(|contact| contact.refine(scene, state, &rotation));
         meter.distance_queries(queries)
+    }
+}
+
+/// The search for contacts in one state.
+struct Search<'a, C> {
+    scene: (&'a Body<'a>, &'a Support<'a>),
+    state: &'a State,
+    rotation: &'a Rotation3<f32>,
+    /// Gap up to which a contact at rest is kept, metres.
+    margin: f32,
+    /// Distance by which a gap that closes with a speed may close until the next search, metres.
+    closing: C,
+}
+
+impl<C: Fn(f32) -> f32> Search<'_, C> {
+    /// The contact of a patch that may touch until the next search, if the patch faces the body.
+    ///
+    /// # Errors
+    ///
+    /// If the patch is farther away: the distance that the body must travel first, metres.
+    fn nearest(&self, index: usize) -> Result<Option<Contact>, f32> {
+        let Self { scene: (body, support), state, rotation, .. } = *self;
+        let (position, patch) = (support.position(index), &support.patches[index]);
+        let arm = position - state.centre;
+        // A point near the pivot hardly moves, however fast the rest of the body does.
+        let velocity = state.velocity_at(&arm);
+        let in_object = rotation.inverse_transform_vector(&velocity);
+        // Only motion along the gradient closes a gap. Where there is no gradient, any may.
+        let margin = |gradient: &Vector| {
+            let is_known = *gradient != Vector::zeros();
+            let speed = if is_known { gradient.dot(&in_object).max(0.0) } else { velocity.norm() };
+            self.margin + (self.closing)(speed)
+        };
+        let at = body.centre + rotation.inverse_transform_vector(&arm);
+        let nearest = nearest_on_patch(body, patch, rotation, &at, margin)?;
+        let is_near = nearest.gap <= margin(&nearest.gradient);
+        Ok(is_near.then(|| Contact::new(self.scene, state, index, &nearest)).flatten())
     }
 }

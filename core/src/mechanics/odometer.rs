@@ -32,9 +32,9 @@ impl Odometer {
         self.path + self.angle * radius
     }
 
-    /// Distance from the pivot to a point in supporter coordinates, metres.
-    pub(crate) fn radius(&self, state: &State, point: &Point) -> f32 {
-        (point - state.centre - state.rotation * self.pivot).norm()
+    /// Position of the pivot in supporter coordinates, metres.
+    pub(crate) fn pivot(&self, state: &State) -> Point {
+        state.centre + state.rotation * self.pivot
     }
 
     /// Upper bound of the distance from the pivot to any point of the body, metres; `reach` is that from the

@@ -46,20 +46,21 @@ pub(super) fn nearest_on_patch(
     patch: &Patch,
     rotation: &Rotation3<f32>,
     at: &Point,
-    margin: f32,
+    margin: impl Fn(&Vector) -> f32,
 ) -> Result<Nearest, f32> {
     let sample = body.field.sample_near(at);
+    let far_margin = margin(&Vector::zeros());
     if let Err(bound) = sample
-        && bound > patch.reach() + margin
+        && bound > patch.reach() + far_margin
     {
-        return Err(bound - patch.reach() - margin);
+        return Err(bound - patch.reach() - far_margin);
     }
     let view = View::new(body, patch, rotation, at);
     let start = match sample {
         Ok((gap, gradient)) if !patch.is_wire() => Nearest { at: *at, offset: [0.0; 2], gap, gradient },
         // The field is exact only close to the body, and a long patch may be close to the body far from its
         // centre.
-        _ => view.nearest_part(margin)?,
+        _ => view.nearest_part(far_margin)?,
     };
     if patch.is_wire() {
         return Ok(start);
@@ -67,10 +68,11 @@ pub(super) fn nearest_on_patch(
     // Estimate of how much closer the rim is than the centre.
     let [a, b] = patch.extents;
     let fall = start.gradient.dot(&view.along).abs() * a + start.gradient.dot(&view.across).abs() * b;
-    if start.gap - fall > margin {
+    let (margin, least) = (margin(&start.gradient), start.gap - fall);
+    if least > margin {
         // The excess over the margin is an estimate, so the patch is visited again when half of it is used
         // up.
-        return Err((start.gap - patch.reach() - margin).max(0.5 * (start.gap - fall - margin)));
+        return Err((start.gap - patch.reach() - margin).max(0.5 * (least - margin)));
     }
     Ok(view.minimise_gap(start))
 }

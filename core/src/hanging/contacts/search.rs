@@ -91,7 +91,7 @@ fn release(
         let stays = settling.release(&pose, poses, meter)?;
         candidates.discount(&candidate, if stays { REST_SHARE } else { 1.0 });
         let counts = &settling.counts;
-        let has_enough = counts.firm_as_preferred >= firm_enough;
+        let has_enough = counts.firm_as_preferred >= firm_enough || settling.is_saturated();
         if has_enough || counts.probable > 0 && ATTEMPT_DIVISOR * (attempt + 1) >= attempts {
             break;
         }
