@@ -286,6 +286,14 @@ pub(super) const CARRY_TRAVEL: f32 = 0.003;
 /// Larger: shorter first steps of the secant method. Smaller: longer ones, which overshoot on thin handles.
 /// Chosen by hand.
 pub(super) const INITIAL_CURVATURE: f32 = 125.0;
+/// Curvature of the hollows of a body, 1/m (radius 10 mm), that the estimate of the nearest point of a patch allows for.
+///
+/// Larger: more patches are searched. Smaller: contacts in narrow hollows are found late. Chosen by hand.
+pub(super) const HOLLOW_CURVATURE: f32 = 100.0;
+/// Fraction of the estimated distance to a patch that the body may travel before the patch is searched again.
+///
+/// Larger: contacts are found late where the estimate is wrong. Smaller: more searches. Chosen by hand.
+pub(super) const REVISIT_RATIO: f32 = 0.8;
 /// Slope of the gap along a patch below which the secant method has converged.
 ///
 /// Larger: contacts away from the nearest point. Smaller: more steps. Chosen by hand.

@@ -191,16 +191,15 @@ impl<C: Fn(f32) -> f32> Search<'_, C> {
         let arm = position - state.centre;
         // A point near the pivot hardly moves, however fast the rest of the body does.
         let velocity = state.velocity_at(&arm);
-        let in_object = rotation.inverse_transform_vector(&velocity);
         // Only motion along the gradient closes a gap. Where there is no gradient, any may.
         let margin = |gradient: &Vector| {
             let is_known = *gradient != Vector::zeros();
-            let speed = if is_known { gradient.dot(&in_object).max(0.0) } else { velocity.norm() };
+            let speed = if is_known { gradient.dot(&velocity).max(0.0) } else { velocity.norm() };
             self.margin + (self.closing)(speed)
         };
         let at = body.centre + rotation.inverse_transform_vector(&arm);
         let nearest = nearest_on_patch(body, patch, rotation, &at, margin)?;
-        let is_near = nearest.gap <= margin(&nearest.gradient);
+        let is_near = nearest.gap <= margin(&(rotation * nearest.gradient));
         Ok(is_near.then(|| Contact::new(self.scene, state, index, &nearest)).flatten())
     }
 }

@@ -1,7 +1,8 @@
 //! A patch: a model of the supporter's surface around one of its points.
 
 use super::constants::{
-    FILLED_RATIO, INITIAL_CURVATURE, MIN_PATCH_EXTENT, PATCH_HALF_EXTENT, REPRESENTATIVE_SPACING, RIM_RATIO,
+    FILLED_RATIO, HOLLOW_CURVATURE, INITIAL_CURVATURE, MIN_PATCH_EXTENT, PATCH_HALF_EXTENT,
+    REPRESENTATIVE_SPACING, RIM_RATIO,
 };
 use crate::geometry::{Vector, unit_or};
 use bytemuck::{Pod, Zeroable};
@@ -74,6 +75,24 @@ impl Patch {
     /// vanishes.
     pub(super) fn initial_strides(&self, offset: [f32; 2]) -> [f32; 2] {
         self.curvatures_towards(offset).map(|curvature| 1.0 / (curvature.max(0.0) + INITIAL_CURVATURE))
+    }
+
+    /// Estimate of how much closer than the point at an offset any other point of the patch is to a body, metres, if `gradient` is that
+    /// of the gap there, supporter coordinates. The patch's own curvature widens the gap towards the rim, less that of the hollows
+    /// of the body.
+    pub(super) fn fall(&self, gradient: &Vector, offset: [f32; 2]) -> f32 {
+        let (axes, curvatures) = ([self.along, self.across()], self.curvatures_towards(offset));
+        let fall = |k: usize| {
+            let slope = gradient.dot(&axes[k]).abs();
+            let (way, curvature) =
+                (self.extents[k] + offset[k].abs(), (curvatures[k] - HOLLOW_CURVATURE).max(0.0));
+            if curvature * way > slope {
+                0.5 * slope * slope / curvature
+            } else {
+                slope * way - 0.5 * curvature * way * way
+            }
+        };
+        fall(0) + fall(1)
     }
 
     /// Nearest offset on the patch. A patch that is straight in both directions is an ellipse, any other a

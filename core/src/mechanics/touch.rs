@@ -3,8 +3,8 @@
 use super::Body;
 use super::constants::{
     CERTAIN_DEPTH, FACING_COSINE, FLAT_SLOPE, MAX_PARTS, MAX_STRIDE_GROWTH, MIN_PART_ASPECT, MIN_PART_LENGTH,
-    MIN_REFINEMENT_CURVATURE, PART_STACK, REFINEMENT_STEPS, REFINEMENT_TOLERANCE, SAME_SIDE_COSINE,
-    SECANT_STEPS, STRIDE_REDUCTION, SURFACE_QUERY_OFFSET,
+    MIN_REFINEMENT_CURVATURE, PART_STACK, REFINEMENT_STEPS, REFINEMENT_TOLERANCE, REVISIT_RATIO,
+    SAME_SIDE_COSINE, SECANT_STEPS, STRIDE_REDUCTION, SURFACE_QUERY_OFFSET,
 };
 use super::patch::Patch;
 use crate::geometry::{Point, Vector, unit_or};
@@ -35,11 +35,12 @@ struct View<'a> {
 }
 
 /// Finds the nearest point of a patch with the distance field. `at` is the centre of the patch in object
-/// coordinates; `rotation` rotates object to supporter coordinates.
+/// coordinates; `rotation` rotates object to supporter coordinates. `margin` gives the gap, metres, up to which a point counts, for
+/// the gradient of the gap in supporter coordinates, or zero where it is not known.
 ///
 /// # Errors
 ///
-/// If no part of the patch is closer than `margin` metres by the field: the distance that the body must
+/// If no part of the patch is closer than the margin by the field: the distance that the body must
 /// travel before one may be, metres.
 pub(super) fn nearest_on_patch(
     body: &Body,
@@ -49,32 +50,29 @@ pub(super) fn nearest_on_patch(
     margin: impl Fn(&Vector) -> f32,
 ) -> Result<Nearest, f32> {
     let sample = body.field.sample_near(at);
-    let far_margin = margin(&Vector::zeros());
-    if let Err(bound) = sample
-        && bound > patch.reach() + far_margin
-    {
-        return Err(bound - patch.reach() - far_margin);
+    let reach = patch.reach();
+    if let Err(bound) = sample {
+        let margin = margin(&Vector::zeros());
+        if bound > reach + margin {
+            return Err(bound - reach - margin);
+        }
     }
-    let view = View::new(body, patch, rotation, at);
+    if patch.is_wire() {
+        return View::new(body, patch, rotation, at).nearest_part(margin(&Vector::zeros()));
+    }
     let start = match sample {
-        Ok((gap, gradient)) if !patch.is_wire() => Nearest { at: *at, offset: [0.0; 2], gap, gradient },
+        Ok((gap, gradient)) => Nearest { at: *at, offset: [0.0; 2], gap, gradient },
         // The field is exact only close to the body, and a long patch may be close to the body far from its
         // centre.
-        _ => view.nearest_part(far_margin)?,
+        Err(_) => View::new(body, patch, rotation, at).nearest_part(margin(&Vector::zeros()))?,
     };
-    if patch.is_wire() {
-        return Ok(start);
-    }
-    // Estimate of how much closer the rim is than the centre.
-    let [a, b] = patch.extents;
-    let fall = start.gradient.dot(&view.along).abs() * a + start.gradient.dot(&view.across).abs() * b;
-    let (margin, least) = (margin(&start.gradient), start.gap - fall);
+    let outwards = rotation * start.gradient;
+    let (margin, least) = (margin(&outwards), start.gap - patch.fall(&outwards, start.offset));
     if least > margin {
-        // The excess over the margin is an estimate, so the patch is visited again when half of it is used
-        // up.
-        return Err((start.gap - patch.reach() - margin).max(0.5 * (least - margin)));
+        // The excess over the margin is an estimate, so the patch is visited again when most of it is used up.
+        return Err((start.gap - reach - margin).max(REVISIT_RATIO * (least - margin)));
     }
-    Ok(view.minimise_gap(start))
+    Ok(View::new(body, patch, rotation, at).minimise_gap(start))
 }
 
 /// Refines a point that was found with the distance field by queries of the mesh. In thin walls and at edges
