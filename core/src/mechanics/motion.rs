@@ -54,8 +54,8 @@ impl Settings {
         libm::roundf(seconds / self.time_step) as usize
     }
 
-    /// Gap below which a contact is kept, metres: [`CONTACT_MARGIN`], and the distance that gravity closes
-    /// from rest in three steps, `g (3 dt)² / 2`. That is one step more than contacts are used for.
+    /// Gap below which a contact at rest is kept, metres: [`CONTACT_MARGIN`], and the distance that gravity closes
+    /// in the two steps for which contacts are used, `g (2 dt)² / 2`.
     fn contact_margin(&self) -> f32 {
         CONTACT_MARGIN + 2.0 * self.time_step * self.time_step * GRAVITY
     }

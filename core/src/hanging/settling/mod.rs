@@ -109,7 +109,7 @@ const CLEARLY_BETTER: f32 = 0.01;
 /// probability nearly all hang.
 const GOOD: f32 = 0.95;
 /// Releases in a row that come to rest without progress before the search ends.
-const PATIENCE: usize = 6;
+const PATIENCE: usize = 8;
 /// Release poses tried for one rest pose.
 const MAX_RELEASES: usize = 3;
 
