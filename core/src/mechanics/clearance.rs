@@ -5,6 +5,7 @@ use super::touch::nearest_on_patch;
 use super::{Body, Support};
 use crate::geometry::{Point, Pose, Vector};
 use crate::monitor::{Meter, Stop};
+use core::cell::Cell;
 
 /// Returns a point of the supporter that is within `clearance` metres of the object at `pose` or deep inside
 /// it, if there is one.
@@ -19,8 +20,12 @@ pub(crate) fn first_within(
     let field = scene.0.field;
     // Beyond the band the field is only a lower bound of the distance.
     let clearance = clearance.min(FIELD_BAND_RATIO * field.band());
-    let is_ball_clear = |point: &Point, radius: f32| field.distance(point) - radius > clearance;
-    first_hit(scene, pose, clearance, is_ball_clear, |point| is_ball_clear(point, 0.0), |_, _| false, meter)
+    let ball_gap = |point: &Point, radius: f32| {
+        let gap = field.distance(point) - radius;
+        (gap <= clearance).then_some(gap)
+    };
+    let is_point_clear = |point: &Point| ball_gap(point, 0.0).is_none();
+    first_hit(scene, pose, clearance, ball_gap, is_point_clear, |_, _| false, meter)
 }
 
 /// Whether the supporter is clear of the object's surface at `pose`. Three conditions must hold:
@@ -38,7 +43,7 @@ pub(crate) fn is_off_surface(
 ) -> Result<bool, Stop> {
     let (field, surface, thin) = (scene.0.field, scene.0.surface, 0.5 * scene.1.reach);
     let greatest = clearance.max(scene.1.reach);
-    let is_ball_clear = |point: &Point, radius: f32| !surface.is_within(point, radius + greatest);
+    let ball_gap = |point: &Point, radius: f32| surface.is_within(point, radius + greatest).then_some(0.0);
     let is_point_clear = |point: &Point| {
         let is_missed_by_field = || {
             field.distance(point) > thin + FIELD_ERROR * field.voxel_size() && surface.is_within(point, thin)
@@ -50,21 +55,22 @@ pub(crate) fn is_off_surface(
         let length = segment.norm();
         length > 0.0 && surface.closest_hit(from, &(segment / length)).is_some_and(|hit| hit < length)
     };
-    Ok(first_hit(scene, pose, greatest, is_ball_clear, is_point_clear, crosses, meter)?.is_none())
+    Ok(first_hit(scene, pose, greatest, ball_gap, is_point_clear, crosses, meter)?.is_none())
 }
 
 /// Returns the first part of the supporter that is not clear of the object: a point for which
 /// `is_point_clear` is false, the deepest point of a patch that penetrates the object by more than
 /// [`PATCH_PENETRATION`], or the centre of a patch of a bar or plane of which a segment `crosses` the object.
 ///
-/// The closures take object coordinates. `is_ball_clear` is true if every point within a radius of a point is
-/// clear; it prunes the tree, as does the distance to the bounding sphere: everything farther than `distance`
-/// metres from it is clear.
+/// The closures take object coordinates. `ball_gap` is `None` if every point within a radius of a point is clear, otherwise how
+/// close such a ball may come to the object, metres; where that is least is looked first, since most poses that are tested
+/// collide. It prunes the tree, as does the distance to the bounding sphere: everything farther than `distance` metres from it
+/// is clear.
 fn first_hit(
     (body, support): (&Body, &Support),
     pose: &Pose,
     distance: f32,
-    is_ball_clear: impl Fn(&Point, f32) -> bool,
+    ball_gap: impl Fn(&Point, f32) -> Option<f32>,
     is_point_clear: impl Fn(&Point) -> bool,
     crosses: impl Fn(&Point, &Point) -> bool,
     meter: &mut Meter,
@@ -87,25 +93,24 @@ fn first_hit(
         let is_crossed = |[from, to]: [Vector; 2]| crosses(&place(from), &place(to));
         patch.filled_segments().any(is_crossed).then_some(position)
     };
-    let (mut found, mut queries) = (None, 0);
-    support.tree.bvh().descend(|_, node| {
-        if found.is_some() {
-            return false;
-        }
-        let aabb = node.aabb();
-        let (centre, radius) = (to_object(&aabb.centre()), 0.5 * aabb.diagonal());
-        queries += 1;
-        if body.is_beyond(&centre, radius + distance) || is_ball_clear(&centre, radius) {
-            return false;
-        }
-        if let Some(items) = node.items() {
-            queries += items.len();
+    let (mut found, queries) = (None::<Point>, Cell::new(0));
+    let count = |some: usize| queries.set(queries.get() + some);
+    support.tree.bvh().visit_ordered(
+        &mut found,
+        |_, node| {
+            let aabb = node.aabb();
+            let (centre, radius) = (to_object(&aabb.centre()), 0.5 * aabb.diagonal());
+            count(1);
+            if body.is_beyond(&centre, radius + distance) { None } else { ball_gap(&centre, radius) }
+        },
+        |found| if found.is_some() { f32::NEG_INFINITY } else { f32::INFINITY },
+        |found, items| {
+            count(items.len());
             let is_hit = |index: &usize| !is_point_clear(&to_object(&points[*index]));
             let hit = items.clone().find(is_hit).map(|index| points[index]);
-            found = hit.or_else(|| support.patches_of(&items).find_map(hit_of_patch));
-        }
-        found.is_none()
-    });
-    meter.distance_queries(queries)?;
+            *found = hit.or_else(|| support.patches_of(&items).find_map(hit_of_patch));
+        },
+    );
+    meter.distance_queries(queries.get())?;
     Ok(found)
 }
