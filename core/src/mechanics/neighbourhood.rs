@@ -124,7 +124,9 @@ impl<'s> Neighbourhood<'s> {
             if group_sleep.until > reading {
                 continue;
             }
-            if group_sleep.until != OPEN {
+            let is_awake = |sleep: &&Sleep| sleep.until <= self.odometer.reading(sleep.radius);
+            // One patch is searched as fast as the group is tested.
+            if group_sleep.until != OPEN && patches[group.patches()].iter().filter(is_awake).count() > 1 {
                 let arm = group.centre - state.centre;
                 let speed = state.velocity_at(&arm).norm() + state.spin.norm() * group.radius;
                 let reach = group.radius + margin + closing(speed);

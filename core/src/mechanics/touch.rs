@@ -56,6 +56,9 @@ pub(super) fn nearest_on_patch(
         if bound > reach + margin {
             return Err(bound - reach - margin);
         }
+        if !patch.is_wire() && patch.extents[0] <= min_part(patch) {
+            return Err(body.field.way_to_bricks(at));
+        }
     }
     if patch.is_wire() {
         return View::new(body, patch, rotation, at).nearest_part(margin(&Vector::zeros()));
@@ -108,6 +111,12 @@ pub(super) fn refine(
         }
     }
     nearest
+}
+
+/// Half length below which a part of a patch is not cut further, metres.
+fn min_part(patch: &Patch) -> f32 {
+    let [length, width] = patch.extents;
+    MIN_PART_LENGTH.max(MIN_PART_ASPECT * width).max(length / MAX_PARTS)
 }
 
 /// A part of a patch, over its whole width.
@@ -163,7 +172,7 @@ impl<'a> View<'a> {
     /// If no part is closer: the distance that the body must travel before one may be, metres.
     fn nearest_part(&self, margin: f32) -> Result<Nearest, f32> {
         let (field, [length, width]) = (self.body.field, self.patch.extents);
-        let min_half = MIN_PART_LENGTH.max(MIN_PART_ASPECT * width).max(length / MAX_PARTS);
+        let min_half = min_part(self.patch);
         let (mut nearest, mut travel) = (None::<Nearest>, f32::INFINITY);
         let mut waiting = Vec::<Part, PART_STACK>::new();
         let _ = waiting.push(Part { offset: 0.0, half: length });
