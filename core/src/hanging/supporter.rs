@@ -57,7 +57,7 @@ impl<'m> Supporter<'m> {
         let scratch = array_bytes::<Vector>(seen)
             .saturating_add(cleaning::scratch_bytes(seen))
             .saturating_add(far_side::scratch_bytes(seen))
-            .saturating_add(larger(PointTree::scratch_bytes(points), steps));
+            .saturating_add(steps);
         model_bytes(model.saturating_add(scratch))
     }
 

@@ -2,19 +2,22 @@
 
 use super::constants::{
     BOTH_SIDES_WEIGHT, CURVATURE_REGULARISATION, END_MARGIN, END_SEARCH_RANGE, MAX_FIT_POINTS,
-    MAX_PATCH_SINE, MIN_PATCH_EXTENT, MIN_WIRE_POINTS, PATCH_HALF_EXTENT, POWER_ITERATIONS, SAME_BAR_COSINE,
-    SAME_SURFACE_COSINE, STRAIGHT_TURN, WIRE_END_RATIO, WIRE_VARIANCE_RATIO,
+    MAX_PATCH_SINE, MIN_PATCH_EXTENT, MIN_WIRE_POINTS, PATCH_HALF_EXTENT, POWER_ITERATIONS,
+    REPRESENTATIVE_SPACING, SAME_BAR_COSINE, SAME_SURFACE_COSINE, STRAIGHT_TURN, WIRE_END_RATIO,
+    WIRE_VARIANCE_RATIO,
 };
 use super::patch::Patch;
-use crate::geometry::{PointTree, Vector, any_perpendicular, unit_or};
+use crate::geometry::{Neighbour, PointTree, Vector, any_perpendicular, unit_or};
 use heapless::Vec;
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
-/// The points around a representative.
-struct Surroundings {
+/// The points around a representative, to which its patch is fitted.
+pub(super) struct Surroundings {
     /// Normal of the representative.
     normal: Vector,
     points: Vec<SurroundingPoint, MAX_FIT_POINTS>,
+    /// Distance between points, metres.
+    spacing: f32,
 }
 
 /// A point near a representative.
@@ -26,28 +29,27 @@ struct SurroundingPoint {
     distance_squared: f32,
 }
 
-/// Fits the patch of the representative with this index in the tree. `apart` is the least distance between
-/// representatives and `spacing` the distance between points, metres.
-pub(super) fn fit_patch(
-    tree: &PointTree,
-    normals: &[Vector],
-    index: usize,
-    apart: f32,
-    spacing: f32,
-) -> Patch {
-    let half = PATCH_HALF_EXTENT * apart;
-    let (radius, far) = (half + spacing, half + END_SEARCH_RANGE * spacing);
-    let around = Surroundings::new(tree, normals, index, far);
-    around.fit_wire(half, radius).unwrap_or_else(|| around.fit_surface(half, spacing, radius))
-}
-
 impl Surroundings {
-    /// Collects the points within `radius` metres; of too many, a subset spread over all.
-    fn new(tree: &PointTree, normals: &[Vector], index: usize, radius: f32) -> Self {
+    /// Collects the points around the representative with this index in the tree, as far as a fit with this `spacing`, the
+    /// distance between points in metres, needs them; of too many, a subset spread over all. Calls `visit` with all of them,
+    /// and with others that are within [`REPRESENTATIVE_SPACING`].
+    pub(super) fn new(
+        tree: &PointTree,
+        normals: &[Vector],
+        index: usize,
+        spacing: f32,
+        mut visit: impl FnMut(Neighbour),
+    ) -> Self {
         let (centre, mut stride) = (tree.points()[index], 1);
-        let mut points = Vec::<SurroundingPoint, MAX_FIT_POINTS>::new();
+        let mut around = Self { normal: normals[index], points: Vec::new(), spacing };
+        let far = around.half_extent() + END_SEARCH_RANGE * spacing;
+        let points = &mut around.points;
         let mut count = 0_usize;
-        tree.for_each_within(&centre, radius, |neighbour| {
+        tree.for_each_within(&centre, far.max(REPRESENTATIVE_SPACING), |neighbour| {
+            visit(neighbour);
+            if neighbour.distance_squared > far * far {
+                return;
+            }
             let other = neighbour.index as usize;
             if points.is_full() {
                 // Halve the density of the subset.
@@ -68,7 +70,19 @@ impl Surroundings {
             }
             count += 1;
         });
-        Self { normal: normals[index], points }
+        around
+    }
+
+    /// Largest half extent of the patch, metres, by the least distance between representatives.
+    fn half_extent(&self) -> f32 {
+        PATCH_HALF_EXTENT * self.spacing.max(REPRESENTATIVE_SPACING)
+    }
+
+    /// Fits the patch.
+    pub(super) fn fit_patch(&self) -> Patch {
+        let half = self.half_extent();
+        let radius = half + self.spacing;
+        self.fit_wire(half, radius).unwrap_or_else(|| self.fit_surface(half, self.spacing, radius))
     }
 
     /// Points within `radius` metres.

@@ -9,7 +9,7 @@
 use super::cleaning::Cleaned;
 use super::visibility;
 use crate::geometry::{Neighbour, Point, PointTree, PointTreeSlots, Vector, any_perpendicular};
-use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
+use crate::memory::{Arena, OutOfMemory, array_bytes};
 
 /// Largest radius of the balls, metres. Thicker things get a back that is too near, but nothing reaches around them.
 const MAX_RADIUS: f32 = 0.015;
@@ -47,7 +47,7 @@ pub(crate) const fn scratch_bytes(points: usize) -> usize {
         .saturating_add(array_bytes::<Vector>(all))
         .saturating_add(array_bytes::<f32>(all))
         .saturating_add(array_bytes::<u8>(all).saturating_mul(2))
-        .saturating_add(larger(array_bytes::<u8>(points), PointTree::scratch_bytes(all)))
+        .saturating_add(array_bytes::<u8>(points))
 }
 
 /// Adds the far side of a cloud to `slots`, which hold the cloud and have room for [`max_points`], as far as its
@@ -79,7 +79,7 @@ pub(crate) fn add<'s>(
     for (name, &source) in names.iter_mut().zip(&sources[..all]) {
         *name = slots.tree().order()[source as usize];
     }
-    slots.fill(&points[..all], arena.scratch())?;
+    slots.fill(&points[..all]);
     let (normals, spacings) = (arena.slice::<Vector>(all)?, arena.slice::<f32>(all)?);
     let (is_excluded, is_guessed) = (arena.slice::<u8>(all)?, arena.slice::<u8>(all)?);
     for (place, &index) in slots.tree().order().iter().enumerate() {
@@ -132,9 +132,9 @@ fn find(
 ) -> Result<(), OutOfMemory> {
     let Cleaned { normals, spacings, is_excluded, .. } = seen;
     let is_edge = scratch.slice::<u8>(normals.len())?;
-    for (index, flag) in is_edge.iter_mut().enumerate() {
-        *flag = u8::from(is_at_edge(tree, normals, index));
-    }
+    tree.for_each_k_nearest::<NEIGHBOURS>(|index, neighbours| {
+        is_edge[index] = u8::from(is_at_edge(tree, normals, index, neighbours));
+    });
     for of in (0..normals.len()).filter(|&index| is_excluded[index] == 0) {
         let (point, normal) = (tree.points()[of], normals[of]);
         let view = visibility::best_view(tree, (&point, &normal), spacings[of], viewpoints);
@@ -186,13 +186,12 @@ fn radius_beside_ray(offset: &Vector, inwards: &Vector, way: &Vector, slack: f32
 }
 
 /// Whether a point is at the end of its surface: its neighbours are on one side.
-fn is_at_edge(tree: &PointTree, normals: &[Vector], index: usize) -> bool {
+fn is_at_edge(tree: &PointTree, normals: &[Vector], index: usize, neighbours: &[Neighbour]) -> bool {
     let (point, normal) = (tree.points()[index], normals[index]);
     let ahead = any_perpendicular(normal);
     let aside = normal.cross(&ahead);
-    let mut found = [Neighbour::default(); NEIGHBOURS];
     let mut angles = heapless::Vec::<f32, NEIGHBOURS>::new();
-    for neighbour in tree.k_nearest(&point, &mut found) {
+    for neighbour in neighbours {
         let offset = tree.points()[neighbour.index as usize] - point;
         let is_on_surface = offset.dot(&normal).abs() < 0.8 * offset.norm();
         if neighbour.distance_squared > 0.0 && is_on_surface {
@@ -217,12 +216,8 @@ mod tests {
     /// The far side of points with normals, as seen from the eye.
     fn far_side(points: &[Point], normals: &[Vector]) -> Vec<Point> {
         let n = points.len();
-        let needed = model_bytes(
-            PointTree::bytes(max_points(n))
-                + cleaning::scratch_bytes(n)
-                + scratch_bytes(n)
-                + PointTree::scratch_bytes(n),
-        );
+        let needed =
+            model_bytes(PointTree::bytes(max_points(n)) + cleaning::scratch_bytes(n) + scratch_bytes(n));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let mut slots = PointTreeSlots::new(max_points(n), &mut arena).unwrap();

@@ -76,7 +76,11 @@ fn main() -> Result<()> {
         for (k, stage) in STAGES.iter().enumerate() {
             print_row(profile, stage, rows.iter().map(|row| row.milliseconds[k]));
         }
-        print_row(profile, "supporter and prediction", rows.iter().map(|row| row.total() - row.milliseconds[0]));
+        print_row(
+            profile,
+            "supporter and prediction",
+            rows.iter().map(|row| row.total() - row.milliseconds[0]),
+        );
         print_row(profile, "all", rows.iter().map(Row::total));
         let most = rows.iter().map(|row| row.bytes.iter().sum::<usize>()).max().unwrap_or_default();
         println!("| {profile} | memory, MiB | | | {:.1} |", most as f64 / f64::from(1 << 20));

@@ -60,10 +60,10 @@ pub(crate) fn clean<'s>(
         false => merge::merge(points, normals, arena)?,
     };
     let mut counts = CleaningCounts { merged: points.len() - kept.points.len(), ..CleaningCounts::default() };
-    slots.fill(kept.points, arena.scratch())?;
-    let spacings = arena.slice::<f32>(kept.points.len())?;
-    spacing::measure(&slots.tree(), spacings);
+    slots.fill(kept.points);
+    let spacings = arena.unset::<f32>(kept.points.len())?;
     let kept = if is_taken_as_it_is {
+        spacing::measure(&slots.tree(), spacings);
         kept
     } else {
         let mut scratch = arena.scratch();
@@ -71,7 +71,7 @@ pub(crate) fn clean<'s>(
         counts.strays = is_stray.iter().filter(|flag| **flag > 0).count();
         if counts.strays > 0 {
             let kept = kept.without(is_stray);
-            slots.fill(kept.points, scratch)?;
+            slots.fill(kept.points);
             spacing::measure(&slots.tree(), &mut spacings[..kept.points.len()]);
             kept
         } else {
