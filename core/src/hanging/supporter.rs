@@ -8,7 +8,7 @@ use crate::mechanics::{Room, Support};
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::Params;
-use crate::perception::cleaning::{self, Cleaned, CleaningCounts};
+use crate::perception::cleaning::{self, Cleaned, CleaningCounts, spacing};
 use crate::perception::{far_side, normals, visibility};
 
 /// Normals shorter than this are taken as not given.
@@ -87,6 +87,9 @@ impl<'m> Supporter<'m> {
             *flag |= u8::from(!cloud.may_hang_on(point as usize));
         }
         let views = cloud.viewpoints();
+        if is_taken_as_it_is && (params.uses_mechanics() || !views.is_empty()) {
+            spacing::measure(&tree.tree(), seen.spacings);
+        }
         let reversed = normals::complete(
             &tree.tree(),
             seen.normals,

@@ -155,7 +155,7 @@ impl<'a> Support<'a> {
         let (points, Room { patches, representatives, groups }) = (tree.points(), room);
         let is_covered = scratch.slice::<u8>(points.len())?;
         let overall = overall_spacing(spacings);
-        let mut count = 0;
+        let (mut around, mut count) = (Surroundings::new(), 0);
         for index in 0..points.len() {
             if is_covered[index] > 0 {
                 continue;
@@ -163,7 +163,7 @@ impl<'a> Support<'a> {
             // One search serves for everything where the spacing is that of the cloud, as it mostly is.
             let mut found = [Neighbour::default(); SPACING_NEIGHBOURS];
             let mut nearest = Nearest::new(&mut found);
-            let mut around = Surroundings::new(&tree, normals, index, overall, |neighbour| {
+            around.collect(&tree, normals, index, overall, |neighbour| {
                 nearest.offer(neighbour);
                 let other = neighbour.index as usize;
                 let is_near = neighbour.distance_squared <= REPRESENTATIVE_SPACING * REPRESENTATIVE_SPACING;
@@ -177,7 +177,7 @@ impl<'a> Support<'a> {
             };
             let spacing = spacing_around(nearest, spacings, overall);
             if spacing != overall {
-                around = Surroundings::new(&tree, normals, index, spacing, |_| {});
+                around.collect(&tree, normals, index, spacing, |_| {});
             }
             patches[count] = around.fit_patch();
             patches[count].ends |= if is_guessed[index] > 0 { Patch::GUESSED } else { 0 };

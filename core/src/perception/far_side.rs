@@ -222,6 +222,7 @@ mod tests {
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let mut slots = PointTreeSlots::new(max_points(n), &mut arena).unwrap();
         let seen = cleaning::clean(points, normals, true, &mut slots, &mut arena).unwrap();
+        cleaning::spacing::measure(&slots.tree(), seen.spacings);
         if !visibility::explain(&slots.tree(), seen.normals, seen.spacings, &[EYE]) {
             return Vec::new();
         }

@@ -37,6 +37,27 @@ fn gap_squared(steps: usize) -> f32 {
     gap * gap
 }
 
+/// The least square of the distance of a block, the one at place `at` of `count` along an axis, by those of the blocks along
+/// that axis, which are `step` apart.
+#[inline]
+fn least_along(squares: &[f32], block: usize, step: usize, at: usize, count: usize) -> f32 {
+    let mut least = squares[block];
+    // Outwards, until nothing further away can be closer.
+    for steps in 1..count {
+        let gap = gap_squared(steps);
+        if gap >= least || steps > at && at + steps >= count {
+            break;
+        }
+        if steps <= at {
+            least = least.min(squares[block - steps * step] + gap);
+        }
+        if at + steps < count {
+            least = least.min(squares[block + steps * step] + gap);
+        }
+    }
+    least
+}
+
 impl Far<'_> {
     pub(super) fn fill(self, mut scratch: Arena) -> Result<(), OutOfMemory> {
         let mut from = scratch.slice::<f32>(self.grid.len())?;
@@ -47,23 +68,13 @@ impl Far<'_> {
         let mut step = 1;
         for &count in &self.layout.blocks {
             let count = count as usize;
-            for block in 0..from.len() {
-                let at = block / step % count;
-                let mut least = from[block];
-                // Outwards, until nothing further away can be closer.
-                for steps in 1..count {
-                    let gap = gap_squared(steps);
-                    if gap >= least || steps > at && at + steps >= count {
-                        break;
-                    }
-                    if steps <= at {
-                        least = least.min(from[block - steps * step] + gap);
-                    }
-                    if at + steps < count {
-                        least = least.min(from[block + steps * step] + gap);
+            for layer in (0..from.len()).step_by(step * count) {
+                for at in 0..count {
+                    let first = layer + at * step;
+                    for block in first..first + step {
+                        to[block] = least_along(from, block, step, at, count);
                     }
                 }
-                to[block] = least;
             }
             core::mem::swap(&mut from, &mut to);
             step *= count;
@@ -93,8 +104,8 @@ impl Far<'_> {
             for k in 0..self.grid.len() {
                 // There and back, so that it spreads far at once.
                 let block = if round % 2 == 0 { k } else { self.grid.len() - 1 - k };
-                let is_far = matches!(Entry::unpack(self.grid[block]), Entry::Far(_));
-                if !is_far || to_bricks[block] > CLOSE * CLOSE {
+                // Zero at blocks with bricks.
+                if to_bricks[block] == 0.0 || to_bricks[block] > CLOSE * CLOSE {
                     continue;
                 }
                 let (place, centre) = (self.layout.place(block), self.layout.centre(block));

@@ -160,10 +160,14 @@ impl Layout {
         (place[axis] < self.blocks[axis]).then(|| self.index(place))
     }
 
+    /// Where the first node of a block is, in voxels.
+    pub(super) fn first_node(&self, block: usize) -> Vector {
+        Vector::from(self.place(block).map(|i| (i * BLOCK) as f32))
+    }
+
     /// The centre of a block, in voxels.
     pub(super) fn centre(&self, block: usize) -> Vector {
-        let half = BLOCK as f32 / 2.0;
-        Vector::from(self.place(block).map(|i| (i * BLOCK) as f32 + half))
+        self.first_node(block).add_scalar(BLOCK as f32 / 2.0)
     }
 
     /// Corners in voxels, from the origin of the grid.

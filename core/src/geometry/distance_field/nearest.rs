@@ -114,8 +114,9 @@ impl<'s> Nearest<'s> {
             for (brick, &block) in places.iter().enumerate() {
                 let known = self.known[brick];
                 let fresh = dilate(known) & !known & ALL;
+                let first = layout.first_node(block as usize);
                 for node in each(fresh) {
-                    self.ask_neighbours(brick, block, node, known, layout, frames);
+                    self.ask_neighbours(brick, first, node, known, frames);
                 }
                 changed |= fresh != 0;
                 self.known[brick] |= fresh;
@@ -137,9 +138,10 @@ impl<'s> Nearest<'s> {
                     continue;
                 }
                 let wrong = self.too_far(brick);
+                let first = layout.first_node(block as usize);
                 for node in each(wrong) {
                     self.distances[brick][node] *= self.distances[brick][node];
-                    self.ask_neighbours(brick, block, node, ALL, layout, frames);
+                    self.ask_neighbours(brick, first, node, ALL, frames);
                     self.distances[brick][node] = libm::sqrtf(self.distances[brick][node]);
                 }
                 self.fresh[brick] = wrong;
@@ -155,11 +157,10 @@ impl<'s> Nearest<'s> {
         for (distances, &block) in self.distances.iter_mut().zip(places) {
             for (node, distance) in distances[..BRICK_NODES].iter_mut().enumerate() {
                 if distance.is_infinite() {
-                    let place = layout.place(block as usize);
-                    let local = [0, 1, 2].map(|i| (place[i] * BLOCK) as f32 + COORDINATES[i][node]);
-                    let point = layout.in_object(&local.into());
-                    let closest = surface.closest_point(&point);
-                    *distance = (layout.in_voxels(&closest) - Vector::from(local)).norm();
+                    let local = layout.first_node(block as usize)
+                        + Vector::from([0, 1, 2].map(|i| COORDINATES[i][node]));
+                    let closest = surface.closest_point(&layout.in_object(&local));
+                    *distance = (layout.in_voxels(&closest) - local).norm();
                 }
             }
         }
@@ -189,19 +190,11 @@ impl<'s> Nearest<'s> {
         }
     }
 
-    /// Tries the triangles of a node's known neighbours. The node's distance is squared.
-    fn ask_neighbours(
-        &mut self,
-        brick: usize,
-        block: u32,
-        node: usize,
-        known: Nodes,
-        layout: &Layout,
-        frames: &[Frame],
-    ) {
+    /// Tries the triangles of a node's known neighbours in a brick whose first node is at `first`. The node's distance is
+    /// squared.
+    fn ask_neighbours(&mut self, brick: usize, first: Vector, node: usize, known: Nodes, frames: &[Frame]) {
         let (distances, triangles) = (&self.distances[brick], &self.triangles[brick]);
-        let place = layout.place(block as usize);
-        let point = Vector::from([0, 1, 2].map(|i| (place[i] * BLOCK) as f32 + COORDINATES[i][node]));
+        let point = first + Vector::from([0, 1, 2].map(|i| COORDINATES[i][node]));
         let (mut best, mut least) = (triangles[node], distances[node]);
         // Down the distances: to the lowest neighbour along an axis, and to the one across from where all three go down.
         let mut lowest = None::<usize>;

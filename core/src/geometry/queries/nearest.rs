@@ -13,8 +13,12 @@ pub(super) struct Group<'a, const K: usize> {
     /// All points of the tree.
     points: &'a [Point],
     members: Range<usize>,
+    /// Coordinates of the members, a row for each axis.
+    coordinates: [[f32; GROUP]; 3],
     /// Neighbours as keys, nearest first; [`NONE`] behind them where there are fewer points.
     nearest: [[u64; K]; GROUP],
+    /// Squares of the distances within which points may be among the nearest; less than zero where there is no member.
+    limits: [f32; GROUP],
 }
 
 /// Behind all neighbours.
@@ -53,12 +57,23 @@ pub(super) fn for_each_group<const K: usize>(tree: &PointTree, mut visit: impl F
 }
 
 impl<'a, const K: usize> Group<'a, K> {
+    fn new(points: &'a [Point], members: Range<usize>) -> Self {
+        let (mut coordinates, mut limits) = ([[0.0; GROUP]; 3], [-1.0; GROUP]);
+        for (lane, point) in points[members.clone()].iter().enumerate() {
+            limits[lane] = f32::INFINITY;
+            for (row, x) in coordinates.iter_mut().zip(point.iter()) {
+                row[lane] = *x;
+            }
+        }
+        Self { points, members, coordinates, nearest: [[NONE; K]; GROUP], limits }
+    }
+
     /// Finds the nearest points of `members`, which are in this box.
     fn find(tree: &PointTree<'a>, members: Range<usize>, aabb: &Aabb) -> Self {
         let points = tree.points();
         // Those before and behind in the order are mostly near, so that the descent is short.
         let around = members.start.saturating_sub(K)..(members.end + K).min(points.len());
-        let mut group = Self { points, members, nearest: [[NONE; K]; GROUP] };
+        let mut group = Self::new(points, members);
         group.look_at(around.clone());
         let nodes = tree.bvh().nodes();
         let distance = |node: u32| distance_squared(aabb, &nodes[node as usize].aabb());
@@ -97,24 +112,44 @@ impl<'a, const K: usize> Group<'a, K> {
 
     /// Square of the distance within which a point may be a neighbour of one of the group.
     fn limit(&self) -> f32 {
-        let farthest = self.nearest().map(|(_, nearest)| nearest[K - 1]).fold(0, u64::max);
-        if farthest == NONE { f32::INFINITY } else { neighbour(farthest).distance_squared }
+        self.limits.iter().copied().fold(0.0, f32::max)
     }
 
     fn look_at(&mut self, items: Range<usize>) {
-        for (point, nearest) in self.points[self.members.clone()].iter().zip(&mut self.nearest) {
-            for (index, other) in items.clone().zip(&self.points[items.clone()]) {
-                let key = key((other - point).norm_squared(), index);
-                if key < nearest[K - 1] {
-                    let mut place = K - 1;
-                    while place > 0 && key < nearest[place - 1] {
-                        nearest[place] = nearest[place - 1];
-                        place -= 1;
-                    }
-                    nearest[place] = key;
+        for index in items {
+            let [x, y, z] = self.points[index].into();
+            let [xs, ys, zs] = &self.coordinates;
+            // For all members at once; mostly the point is too far from all.
+            let mut squares = [0.0; GROUP];
+            let mut near = 0_u32;
+            for lane in 0..GROUP {
+                let (dx, dy, dz) = (x - xs[lane], y - ys[lane], z - zs[lane]);
+                squares[lane] = dx * dx + dy * dy + dz * dz;
+                near |= u32::from(squares[lane] <= self.limits[lane]) << lane;
+            }
+            while near > 0 {
+                let lane = near.trailing_zeros() as usize;
+                near &= near - 1;
+                let nearest = &mut self.nearest[lane];
+                insert(nearest, key(squares[lane], index));
+                if nearest[K - 1] != NONE {
+                    self.limits[lane] = neighbour(nearest[K - 1]).distance_squared;
                 }
             }
         }
+    }
+}
+
+/// Puts a key in its place, and the last one out.
+#[inline]
+fn insert<const K: usize>(nearest: &mut [u64; K], key: u64) {
+    if key < nearest[K - 1] {
+        let mut place = K - 1;
+        while place > 0 && key < nearest[place - 1] {
+            nearest[place] = nearest[place - 1];
+            place -= 1;
+        }
+        nearest[place] = key;
     }
 }
 

@@ -145,14 +145,25 @@ impl Supportability<'_> {
     ) -> Option<(Point, f32)> {
         let offset = |point: &Point| (point - contact_point).dot(&direction).abs();
         let mut count = 0;
-        for point in self.points.iter().filter(|p| offset(p) < self.params.slice_half_thickness) {
-            slice[count] = *point;
-            if *point == contact_point {
-                slice.swap(0, count);
+        let mut look_at = |point: &Point| {
+            if offset(point) < self.params.slice_half_thickness {
+                slice[count] = *point;
+                if *point == contact_point {
+                    slice.swap(0, count);
+                }
+                count += 1;
             }
-            count += 1;
+        };
+        let link = self.params.slice_link_distance;
+        if reach.is_finite() {
+            // What hangs together and reaches farther has a point that is not a link farther.
+            self.tree.for_each_within(&contact_point, reach + link, |neighbour| {
+                look_at(&self.tree.points()[neighbour.index as usize]);
+            });
+        } else {
+            self.points.iter().for_each(look_at);
         }
-        let members = linked_cluster(&mut slice[..count], self.params.slice_link_distance, reach)?;
+        let members = linked_cluster(&mut slice[..count], link, reach)?;
         if members < 2 {
             return None;
         }

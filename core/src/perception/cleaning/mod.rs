@@ -25,8 +25,9 @@ pub(crate) const fn scratch_bytes(points: usize) -> usize {
 pub(crate) struct Cleaned<'s> {
     /// Unit normals, zero where none was given.
     pub(crate) normals: &'s mut [Vector],
-    /// Distance between points around each point, metres.
-    pub(crate) spacings: &'s [f32],
+    /// Distance between points around each point, metres; zero in a cloud that is taken as it is, until
+    /// [`spacing::measure`] measures it.
+    pub(crate) spacings: &'s mut [f32],
     /// 1 for points on which nothing hangs: at first those on large planes, as walls and tables.
     pub(crate) is_excluded: &'s mut [u8],
     /// 1 for points that were not seen but guessed: at first none.
@@ -61,9 +62,8 @@ pub(crate) fn clean<'s>(
     };
     let mut counts = CleaningCounts { merged: points.len() - kept.points.len(), ..CleaningCounts::default() };
     slots.fill(kept.points);
-    let spacings = arena.unset::<f32>(kept.points.len())?;
+    let spacings = arena.slice::<f32>(kept.points.len())?;
     let kept = if is_taken_as_it_is {
-        spacing::measure(&slots.tree(), spacings);
         kept
     } else {
         let mut scratch = arena.scratch();
@@ -87,7 +87,7 @@ pub(crate) fn clean<'s>(
     }
     counts.on_planes = is_excluded.iter().filter(|flag| **flag > 0).count();
     slots.rename(kept.names);
-    Ok(Cleaned { normals, spacings: &spacings[..count], is_excluded, is_guessed, counts })
+    Ok(Cleaned { normals, spacings: &mut spacings[..count], is_excluded, is_guessed, counts })
 }
 
 #[cfg(test)]
