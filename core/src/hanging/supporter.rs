@@ -50,14 +50,16 @@ impl<'m> Supporter<'m> {
         let model = PointTree::bytes(points)
             .saturating_add(method::supporter_bytes())
             .saturating_add(Room::bytes(points));
-        let steps = larger(
-            normals::scratch_bytes(seen),
-            larger(method::supporter_scratch_bytes(points), Support::scratch_bytes(points)),
+        let before_far_side = larger(
+            larger(cleaning::scratch_bytes(seen), normals::scratch_bytes(seen)),
+            // Places found with working memory are on a cloud that is taken as it is.
+            method::supporter_scratch_bytes(seen),
         );
+        let with_far_side = far_side::bytes(seen)
+            .saturating_add(larger(far_side::scratch_bytes(seen), Support::scratch_bytes(points)));
         let scratch = array_bytes::<Vector>(seen)
-            .saturating_add(cleaning::scratch_bytes(seen))
-            .saturating_add(far_side::scratch_bytes(seen))
-            .saturating_add(steps);
+            .saturating_add(cleaning::bytes(seen))
+            .saturating_add(larger(before_far_side, with_far_side));
         model_bytes(model.saturating_add(scratch))
     }
 

@@ -6,7 +6,7 @@
 //! shape", 1967), so that a round bar gets its exact back, a wire its other half, and a strip that was seen face on a
 //! thickness like its width.
 
-use super::cleaning::Cleaned;
+use super::cleaning::{self, Cleaned};
 use super::visibility;
 use crate::geometry::{Neighbour, Point, PointTree, PointTreeSlots, Vector, any_perpendicular};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
@@ -39,14 +39,16 @@ pub(crate) const fn max_points(points: usize) -> usize {
     points.saturating_add(points / 2)
 }
 
-/// Bytes of working memory for a cloud of `points`, some of which the result keeps.
+/// Bytes of what is kept of a cloud of `points` with its far side.
+pub(crate) const fn bytes(points: usize) -> usize {
+    cleaning::bytes(max_points(points))
+}
+
+/// Bytes of working memory for a cloud of `points`.
 pub(crate) const fn scratch_bytes(points: usize) -> usize {
     let all = max_points(points);
     array_bytes::<Point>(all)
         .saturating_add(array_bytes::<u32>(all).saturating_mul(2))
-        .saturating_add(array_bytes::<Vector>(all))
-        .saturating_add(array_bytes::<f32>(all))
-        .saturating_add(array_bytes::<u8>(all).saturating_mul(2))
         .saturating_add(array_bytes::<u8>(points))
 }
 
@@ -60,9 +62,12 @@ pub(crate) fn add<'s>(
 ) -> Result<Cleaned<'s>, OutOfMemory> {
     let count = seen.normals.len();
     let most = max_points(count);
-    let points = arena.slice::<Point>(most)?;
+    let (normals, spacings) = (arena.unset::<Vector>(most)?, arena.unset::<f32>(most)?);
+    let (is_excluded, is_guessed) = (arena.unset::<u8>(most)?, arena.unset::<u8>(most)?);
+    let mut scratch = arena.scratch();
+    let points = scratch.unset::<Point>(most)?;
     // Index of the point that was seen, its own or that of the mirrored one, in the old tree and in the caller's cloud.
-    let (sources, names) = (arena.slice::<u32>(most)?, arena.slice::<u32>(most)?);
+    let (sources, names) = (scratch.unset::<u32>(most)?, scratch.unset::<u32>(most)?);
     points[..count].copy_from_slice(slots.tree().points());
     for (slot, index) in sources[..count].iter_mut().zip(0..) {
         *slot = index;
@@ -74,14 +79,14 @@ pub(crate) fn add<'s>(
         stride: 1,
         found: 0,
     };
-    find(&slots.tree(), &seen, viewpoints, arena.scratch(), far)?;
+    find(&slots.tree(), &seen, viewpoints, scratch, far)?;
     let all = count + far.count;
     for (name, &source) in names.iter_mut().zip(&sources[..all]) {
         *name = slots.tree().order()[source as usize];
     }
     slots.fill(&points[..all]);
-    let (normals, spacings) = (arena.slice::<Vector>(all)?, arena.slice::<f32>(all)?);
-    let (is_excluded, is_guessed) = (arena.slice::<u8>(all)?, arena.slice::<u8>(all)?);
+    let (normals, spacings) = (&mut normals[..all], &mut spacings[..all]);
+    let (is_excluded, is_guessed) = (&mut is_excluded[..all], &mut is_guessed[..all]);
     for (place, &index) in slots.tree().order().iter().enumerate() {
         let (source, is_far) = (sources[index as usize] as usize, index as usize >= count);
         normals[place] = if is_far { -seen.normals[source] } else { seen.normals[source] };
@@ -208,7 +213,7 @@ fn is_at_edge(tree: &PointTree, normals: &[Vector], index: usize, neighbours: &[
 mod tests {
     use super::*;
     use crate::memory::model_bytes;
-    use crate::perception::{cleaning, visibility};
+    use crate::perception::visibility;
     use crate::random::Random;
 
     const EYE: Point = Point::new(0.6, 0.0, 0.1);
@@ -216,8 +221,12 @@ mod tests {
     /// The far side of points with normals, as seen from the eye.
     fn far_side(points: &[Point], normals: &[Vector]) -> Vec<Point> {
         let n = points.len();
-        let needed =
-            model_bytes(PointTree::bytes(max_points(n)) + cleaning::scratch_bytes(n) + scratch_bytes(n));
+        let needed = model_bytes(
+            PointTree::bytes(max_points(n))
+                + cleaning::bytes(n)
+                + bytes(n)
+                + cleaning::scratch_bytes(n).max(scratch_bytes(n)),
+        );
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let mut slots = PointTreeSlots::new(max_points(n), &mut arena).unwrap();

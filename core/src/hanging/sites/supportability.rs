@@ -42,7 +42,7 @@ pub(super) const MAX_SITES: usize = 256;
 
 /// Bytes of working memory.
 pub(super) const fn scratch_bytes(points: usize) -> usize {
-    array_bytes::<Point>(points).saturating_mul(2).saturating_add(Clusters::scratch_bytes(points))
+    array_bytes::<Point>(points).saturating_add(Clusters::scratch_bytes(points))
 }
 
 /// The input of the search.
@@ -75,10 +75,11 @@ impl Supportability<'_> {
         if counts.contact_points == 0 {
             return Ok((counts, None));
         }
-        let slice = scratch.slice::<Point>(self.points.len())?;
         let bandwidth = self.params.cluster_bandwidth * self.tree.aabb().diagonal();
         let clusters = Clusters::find(&contacts[..counts.contact_points], bandwidth, scratch)?;
         counts.clusters = clusters.count;
+        // The clusters have copies of the contact points.
+        let slice = contacts;
 
         let mut sites = Best::new(slots);
         let mut stop = None;
