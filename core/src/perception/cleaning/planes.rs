@@ -148,8 +148,8 @@ mod tests {
         for density in [0.2, 0.8, 0.93, 1.0] {
             // A field of half the grid's size that reaches its border.
             let mut cells = std::vec![0; CELLS * CELLS];
-            for cell in 0..CELLS * CELLS / 2 {
-                cells[cell] = u8::from(random.next_f32() < density && cell % CELLS > CELLS / 3);
+            for (place, cell) in cells.iter_mut().enumerate().take(CELLS * CELLS / 2) {
+                *cell = u8::from(random.next_f32() < density && place % CELLS > CELLS / 3);
             }
             let mut expected = cells.clone();
             for (x, y) in (0..=CELLS - SQUARE).flat_map(|y| (0..=CELLS - SQUARE).map(move |x| (x, y))) {

@@ -9,7 +9,7 @@ const NEIGHBOURS: usize = 5;
 /// The distance from a point to its fourth neighbour, metres; zero for a point that is alone. `nearest` are its neighbours,
 /// itself included, nearest first.
 pub(super) fn of(nearest: &[Neighbour]) -> f32 {
-    let last = nearest.iter().take(NEIGHBOURS).last();
+    let last = nearest[..nearest.len().min(NEIGHBOURS)].last();
     last.map_or(0.0, |neighbour| libm::sqrtf(neighbour.distance_squared))
 }
 
