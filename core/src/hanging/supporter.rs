@@ -8,7 +8,7 @@ use crate::mechanics::{Room, Support};
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::Params;
-use crate::perception::cleaning::{self, Cleaned, CleaningCounts};
+use crate::perception::cleaning::{self, Cleaned, CleaningCounts, spacing};
 use crate::perception::{far_side, normals, visibility};
 
 /// Normals shorter than this are taken as not given.
@@ -50,14 +50,16 @@ impl<'m> Supporter<'m> {
         let model = PointTree::bytes(points)
             .saturating_add(method::supporter_bytes())
             .saturating_add(Room::bytes(points));
-        let steps = larger(
-            normals::scratch_bytes(seen),
-            larger(method::supporter_scratch_bytes(points), Support::scratch_bytes(points)),
+        let before_far_side = larger(
+            larger(cleaning::scratch_bytes(seen), normals::scratch_bytes(seen)),
+            // Places found with working memory are on a cloud that is taken as it is.
+            method::supporter_scratch_bytes(seen),
         );
+        let with_far_side = far_side::bytes(seen)
+            .saturating_add(larger(far_side::scratch_bytes(seen), Support::scratch_bytes(points)));
         let scratch = array_bytes::<Vector>(seen)
-            .saturating_add(cleaning::scratch_bytes(seen))
-            .saturating_add(far_side::scratch_bytes(seen))
-            .saturating_add(larger(PointTree::scratch_bytes(points), steps));
+            .saturating_add(cleaning::bytes(seen))
+            .saturating_add(larger(before_far_side, with_far_side));
         model_bytes(model.saturating_add(scratch))
     }
 
@@ -87,6 +89,9 @@ impl<'m> Supporter<'m> {
             *flag |= u8::from(!cloud.may_hang_on(point as usize));
         }
         let views = cloud.viewpoints();
+        if is_taken_as_it_is && (params.uses_mechanics() || !views.is_empty()) {
+            spacing::measure(&tree.tree(), seen.spacings);
+        }
         let reversed = normals::complete(
             &tree.tree(),
             seen.normals,

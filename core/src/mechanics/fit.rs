@@ -2,19 +2,25 @@
 
 use super::constants::{
     BOTH_SIDES_WEIGHT, CURVATURE_REGULARISATION, END_MARGIN, END_SEARCH_RANGE, MAX_FIT_POINTS,
-    MAX_PATCH_SINE, MIN_PATCH_EXTENT, MIN_WIRE_POINTS, PATCH_HALF_EXTENT, POWER_ITERATIONS, SAME_BAR_COSINE,
-    SAME_SURFACE_COSINE, STRAIGHT_TURN, WIRE_END_RATIO, WIRE_VARIANCE_RATIO,
+    MAX_PATCH_SINE, MIN_PATCH_EXTENT, MIN_WIRE_POINTS, PATCH_HALF_EXTENT, POWER_ITERATIONS,
+    REPRESENTATIVE_SPACING, SAME_BAR_COSINE, SAME_SURFACE_COSINE, STRAIGHT_TURN, WIRE_END_RATIO,
+    WIRE_VARIANCE_RATIO,
 };
 use super::patch::Patch;
-use crate::geometry::{PointTree, Vector, any_perpendicular, unit_or};
+use crate::geometry::{Neighbour, PointTree, Vector, any_perpendicular, unit_or};
 use heapless::Vec;
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
-/// The points around a representative.
-struct Surroundings {
+/// The points around a representative, to which its patch is fitted.
+pub(super) struct Surroundings {
     /// Normal of the representative.
     normal: Vector,
-    points: Vec<SurroundingPoint, MAX_FIT_POINTS>,
+    /// Those near enough to determine the curvatures.
+    near: Vec<SurroundingPoint, MAX_FIT_POINTS>,
+    /// The others.
+    far: Vec<SurroundingPoint, MAX_FIT_POINTS>,
+    /// Distance between points, metres.
+    spacing: f32,
 }
 
 /// A point near a representative.
@@ -23,71 +29,85 @@ struct SurroundingPoint {
     /// Position relative to the representative, metres.
     offset: Vector,
     normal: Vector,
-    distance_squared: f32,
-}
-
-/// Fits the patch of the representative with this index in the tree. `apart` is the least distance between
-/// representatives and `spacing` the distance between points, metres.
-pub(super) fn fit_patch(
-    tree: &PointTree,
-    normals: &[Vector],
-    index: usize,
-    apart: f32,
-    spacing: f32,
-) -> Patch {
-    let half = PATCH_HALF_EXTENT * apart;
-    let (radius, far) = (half + spacing, half + END_SEARCH_RANGE * spacing);
-    let around = Surroundings::new(tree, normals, index, far);
-    around.fit_wire(half, radius).unwrap_or_else(|| around.fit_surface(half, spacing, radius))
+    /// How many points were found before it.
+    place: usize,
 }
 
 impl Surroundings {
-    /// Collects the points within `radius` metres; of too many, a subset spread over all.
-    fn new(tree: &PointTree, normals: &[Vector], index: usize, radius: f32) -> Self {
+    /// No points yet.
+    pub(super) fn new() -> Self {
+        Self { normal: Vector::zeros(), near: Vec::new(), far: Vec::new(), spacing: 0.0 }
+    }
+
+    /// Collects the points around the representative with this index in the tree, as far as a fit with this `spacing`, the
+    /// distance between points in metres, needs them; of too many, a subset spread over all. Calls `visit` with all of them,
+    /// and with others that are within [`REPRESENTATIVE_SPACING`].
+    pub(super) fn collect(
+        &mut self,
+        tree: &PointTree,
+        normals: &[Vector],
+        index: usize,
+        spacing: f32,
+        mut visit: impl FnMut(Neighbour),
+    ) {
+        (self.normal, self.spacing) = (normals[index], spacing);
         let (centre, mut stride) = (tree.points()[index], 1);
-        let mut points = Vec::<SurroundingPoint, MAX_FIT_POINTS>::new();
-        let mut count = 0_usize;
-        tree.for_each_within(&centre, radius, |neighbour| {
-            let other = neighbour.index as usize;
-            if points.is_full() {
-                // Halve the density of the subset.
-                let mut kept = 0;
-                points.retain(|_| {
-                    kept += 1;
-                    kept % 2 == 1
-                });
-                stride *= 2;
+        let (radius, reach) = (self.radius(), self.half_extent() + END_SEARCH_RANGE * spacing);
+        let Self { near, far, .. } = self;
+        near.clear();
+        far.clear();
+        let mut place = 0_usize;
+        tree.for_each_within(&centre, reach.max(REPRESENTATIVE_SPACING), |neighbour| {
+            visit(neighbour);
+            if neighbour.distance_squared > reach * reach {
+                return;
             }
-            if count.is_multiple_of(stride) {
+            if near.len() + far.len() == MAX_FIT_POINTS {
+                // Halve the density of the subset.
+                stride *= 2;
+                near.retain(|point| point.place.is_multiple_of(stride));
+                far.retain(|point| point.place.is_multiple_of(stride));
+            }
+            if place.is_multiple_of(stride) {
+                let other = neighbour.index as usize;
+                let is_near = neighbour.distance_squared <= radius * radius;
                 let (offset, normal) = (tree.points()[other] - centre, normals[other]);
-                let _ = points.push(SurroundingPoint {
+                let _ = if is_near { &mut *near } else { &mut *far }.push(SurroundingPoint {
                     offset,
                     normal,
-                    distance_squared: neighbour.distance_squared,
+                    place,
                 });
             }
-            count += 1;
+            place += 1;
         });
-        Self { normal: normals[index], points }
     }
 
-    /// Points within `radius` metres.
-    fn within(&self, radius: f32) -> impl Iterator<Item = &SurroundingPoint> {
-        self.points.iter().filter(move |point| point.distance_squared <= radius * radius)
+    /// Largest half extent of the patch, metres, by the least distance between representatives.
+    fn half_extent(&self) -> f32 {
+        PATCH_HALF_EXTENT * self.spacing.max(REPRESENTATIVE_SPACING)
     }
 
-    /// Points within `radius` metres whose normals differ little enough for them to be on the same side of a
-    /// bar.
-    fn on_bar(&self, radius: f32) -> impl Iterator<Item = &SurroundingPoint> {
-        self.within(radius).filter(|point| point.normal.dot(&self.normal) > SAME_BAR_COSINE)
+    /// Distance of the points that determine the curvatures, metres.
+    fn radius(&self) -> f32 {
+        self.half_extent() + self.spacing
     }
 
-    /// Fits a patch of a surface with half extents of at most `half` metres. Points within `radius` metres
-    /// determine the curvatures.
-    fn fit_surface(&self, half: f32, spacing: f32, radius: f32) -> Patch {
-        let (along, curvatures) = self.principal_curvatures(radius);
+    /// Fits the patch.
+    pub(super) fn fit_patch(&self) -> Patch {
+        let half = self.half_extent();
+        self.fit_wire(half).unwrap_or_else(|| self.fit_surface(half))
+    }
+
+    /// The near points whose normals differ little enough for them to be on the same side of a bar.
+    fn on_bar(&self) -> impl Iterator<Item = &SurroundingPoint> {
+        self.near.iter().filter(|point| point.normal.dot(&self.normal) > SAME_BAR_COSINE)
+    }
+
+    /// Fits a patch of a surface with half extents of at most `half` metres.
+    fn fit_surface(&self, half: f32) -> Patch {
+        let (along, curvatures) = self.principal_curvatures();
         let mut patch = Patch { normal: self.normal, along, ..Patch::default() };
-        let sides = self.side_curvatures(&patch, radius, curvatures);
+        let sides = self.side_curvatures(&patch, curvatures);
         let is_straight = |k: usize| sides[2 * k..][..2].iter().all(|side| side.abs() * half < STRAIGHT_TURN);
         patch.straight = match (is_straight(0), is_straight(1)) {
             (false, _) => 0,
@@ -96,7 +116,7 @@ impl Surroundings {
         };
         patch.curvatures = sides;
         patch.curvatures[..2 * patch.straight as usize].fill(0.0);
-        let [near, far] = self.observed_extents(&patch, radius);
+        let [near, far] = self.observed_extents(&patch);
         for k in 0..2 {
             let sharpest = patch.curvatures[2 * k].abs().max(patch.curvatures[2 * k + 1].abs());
             let max_extent = MAX_PATCH_SINE / sharpest.max(1.0);
@@ -104,7 +124,7 @@ impl Surroundings {
             patch.extents[k] = extent;
             for side in [2 * k, 2 * k + 1] {
                 // A patch that is cut off because it becomes steep does not end: the surface goes on below.
-                let is_end = far[side] < extent + END_MARGIN * spacing && extent < max_extent;
+                let is_end = far[side] < extent + END_MARGIN * self.spacing && extent < max_extent;
                 patch.ends |= u32::from(is_end) << side;
             }
         }
@@ -113,9 +133,9 @@ impl Surroundings {
 
     /// Fits the patch of a wire thinner than the spacing of the points. Such a wire has too few points on
     /// each side for a fit of its curvature to the normals, but all points lie along it. Returns `None` if
-    /// those within `radius` metres do not.
-    fn fit_wire(&self, half: f32, radius: f32) -> Option<Patch> {
-        let offsets = || self.within(radius).map(|point| point.offset);
+    /// the near ones do not.
+    fn fit_wire(&self, half: f32) -> Option<Patch> {
+        let offsets = || self.near.iter().map(|point| point.offset);
         let (mut count, mut sum, mut squares) = (0.0_f32, Vector::zeros(), Matrix3::zeros());
         for offset in offsets() {
             count += 1.0;
@@ -162,17 +182,17 @@ impl Surroundings {
         })
     }
 
-    /// Observed extent of the surface towards each side, metres: by the points within `radius` metres, and by
-    /// all points. A patch that reached over the rim of a bar's end would hold a body that slides off there.
-    fn observed_extents(&self, patch: &Patch, radius: f32) -> [[f32; 4]; 2] {
+    /// Observed extent of the surface towards each side, metres: by the near points, and by all points. A patch that reached over the rim of a bar's end would hold a body that slides off there.
+    fn observed_extents(&self, patch: &Patch) -> [[f32; 4]; 2] {
         let across = patch.across();
         let [mut near, mut far] = [[0.0_f32; 4]; 2];
-        for point in &self.points {
+        let points = self.near.iter().zip(core::iter::repeat(true));
+        for (point, is_near) in points.chain(self.far.iter().zip(core::iter::repeat(false))) {
             let (x, y) = (point.offset.dot(&patch.along), point.offset.dot(&across));
-            if point.normal.dot(&patch.normal_vector_at([x, y])) < SAME_SURFACE_COSINE {
+            let [u, v, w] = patch.normal_at([x, y]);
+            if point.normal.dot(&(patch.along * u + across * v + patch.normal * w)) < SAME_SURFACE_COSINE {
                 continue;
             }
-            let is_near = point.distance_squared <= radius * radius;
             let distance = libm::sqrtf(x * x + y * y);
             let ahead = core::f32::consts::FRAC_1_SQRT_2 * distance;
             for (side, reach) in [x, -x, y, -y].into_iter().enumerate() {
@@ -194,12 +214,12 @@ impl Surroundings {
 
     /// Curvature towards each side, 1/m. At the seam between a bar and its round end the surface is curved on
     /// one side only. `both` are the curvatures of the fit to both sides together.
-    fn side_curvatures(&self, patch: &Patch, radius: f32, both: [f32; 2]) -> [f32; 4] {
+    fn side_curvatures(&self, patch: &Patch, both: [f32; 2]) -> [f32; 4] {
         let axes = [patch.along, patch.across()];
-        let weight = BOTH_SIDES_WEIGHT * radius * radius;
+        let weight = BOTH_SIDES_WEIGHT * self.radius() * self.radius();
         let mut squares = [weight; 4];
         let mut turns = [both[0] * weight, both[0] * weight, both[1] * weight, both[1] * weight];
-        for point in self.on_bar(radius) {
+        for point in self.on_bar() {
             for (k, axis) in axes.iter().enumerate() {
                 let reach = point.offset.dot(axis);
                 let side = 2 * k + usize::from(reach < 0.0);
@@ -211,14 +231,14 @@ impl Surroundings {
     }
 
     /// Principal direction of least curvature, and the principal curvatures in and across it, 1/m: from a
-    /// least-squares fit of the second fundamental form to the normals of the points within `radius` metres.
-    fn principal_curvatures(&self, radius: f32) -> (Vector, [f32; 2]) {
+    /// least-squares fit of the second fundamental form to the normals of the near points.
+    fn principal_curvatures(&self) -> (Vector, [f32; 2]) {
         let ahead = any_perpendicular(self.normal);
         let aside = self.normal.cross(&ahead);
         let flat = |v: &Vector| Vector2::new(v.dot(&ahead), v.dot(&aside));
         let (mut count, mut offset_sum, mut change_sum) = (0.0_f32, Vector2::zeros(), Vector2::zeros());
         let (mut offsets, mut changes) = (Matrix2::zeros(), Matrix2::zeros());
-        for point in self.on_bar(radius) {
+        for point in self.on_bar() {
             let (offset, change) = (flat(&point.offset), flat(&point.normal));
             count += 1.0;
             offset_sum += offset;

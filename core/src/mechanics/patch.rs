@@ -64,12 +64,6 @@ impl Patch {
         [x * scale, y * scale, 0.0]
     }
 
-    /// Unit normal of the patch at an offset, in supporter coordinates.
-    pub(super) fn normal_vector_at(&self, offset: [f32; 2]) -> Vector {
-        let [x, y, z] = self.normal_at(offset);
-        self.along * x + self.across() * y + self.normal * z
-    }
-
     /// Initial steps of the secant method from an offset, along and across, metres per unit of slope: the
     /// patch's curvature and an initial guess for that of the touching surface predict where the slope
     /// vanishes.

@@ -4,9 +4,9 @@ use super::constants::{
     GROUP_SIZE, REPRESENTATIVE_COSINE, REPRESENTATIVE_SPACING, SPACING_NEIGHBOURS, SPACING_PROBES,
     SPACING_RATIO,
 };
-use super::fit::fit_patch;
+use super::fit::Surroundings;
 use super::patch::Patch;
-use crate::geometry::{Aabb, Neighbour, Point, PointTree, Vector};
+use crate::geometry::{Aabb, Nearest, Neighbour, Point, PointTree, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use bytemuck::{Pod, Zeroable};
 use core::ops::Range;
@@ -155,19 +155,31 @@ impl<'a> Support<'a> {
         let (points, Room { patches, representatives, groups }) = (tree.points(), room);
         let is_covered = scratch.slice::<u8>(points.len())?;
         let overall = overall_spacing(spacings);
-        let mut count = 0;
+        let (mut around, mut count) = (Surroundings::new(), 0);
         for index in 0..points.len() {
             if is_covered[index] > 0 {
                 continue;
             }
-            tree.for_each_within(&points[index], REPRESENTATIVE_SPACING, |neighbour| {
+            // One search serves for everything where the spacing is that of the cloud, as it mostly is.
+            let mut found = [Neighbour::default(); SPACING_NEIGHBOURS];
+            let mut nearest = Nearest::new(&mut found);
+            around.collect(&tree, normals, index, overall, |neighbour| {
+                nearest.offer(neighbour);
                 let other = neighbour.index as usize;
-                if normals[other].dot(&normals[index]) > REPRESENTATIVE_COSINE {
+                let is_near = neighbour.distance_squared <= REPRESENTATIVE_SPACING * REPRESENTATIVE_SPACING;
+                if is_near && normals[other].dot(&normals[index]) > REPRESENTATIVE_COSINE {
                     is_covered[other] = 1;
                 }
             });
-            let spacing = spacing_around(&tree, spacings, index, overall);
-            patches[count] = fit_patch(&tree, normals, index, spacing.max(REPRESENTATIVE_SPACING), spacing);
+            let nearest = match nearest.is_full() {
+                true => nearest.into_slice(),
+                false => tree.k_nearest(&points[index], &mut found),
+            };
+            let spacing = spacing_around(nearest, spacings, overall);
+            if spacing != overall {
+                around.collect(&tree, normals, index, spacing, |_| {});
+            }
+            patches[count] = around.fit_patch();
             patches[count].ends |= if is_guessed[index] > 0 { Patch::GUESSED } else { 0 };
             patches[count].ends |= if is_excluded[index] > 0 { Patch::EXCLUDED } else { 0 };
             representatives[count] = index as u32;
@@ -196,16 +208,14 @@ fn overall_spacing(spacings: &[f32]) -> f32 {
     probes[SPACING_PROBES / 2]
 }
 
-/// Spacing around a point, metres: that of the cloud, unless the points around are much denser or sparser, as those of a
+/// Spacing around a point by its nearest neighbours, metres: that of the cloud, unless the points around are much denser or sparser, as those of a
 /// wall behind a hook.
-fn spacing_around(tree: &PointTree, spacings: &[f32], index: usize, overall: f32) -> f32 {
-    let mut found = [Neighbour::default(); SPACING_NEIGHBOURS];
-    let found = tree.k_nearest(&tree.points()[index], &mut found);
+fn spacing_around(nearest: &[Neighbour], spacings: &[f32], overall: f32) -> f32 {
     let mut around = [0.0; SPACING_NEIGHBOURS];
-    for (spacing, neighbour) in around.iter_mut().zip(found) {
+    for (spacing, neighbour) in around.iter_mut().zip(nearest) {
         *spacing = spacings[neighbour.index as usize];
     }
-    let around = &mut around[..found.len()];
+    let around = &mut around[..nearest.len()];
     around.sort_unstable_by(f32::total_cmp);
     let local = around[around.len() / 2];
     let is_like_overall = local <= SPACING_RATIO * overall && overall <= SPACING_RATIO * local;

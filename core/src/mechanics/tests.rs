@@ -49,7 +49,7 @@ impl Scene {
             MassProperties::scratch_bytes(mesh.vertices().len(), triangles),
             Surface::scratch_bytes(triangles),
             DistanceField::scratch_bytes(triangles, VOXELS),
-            PointTree::scratch_bytes(count),
+            Support::scratch_bytes(count),
         ];
         let needed = model_bytes(lasting + scratch.into_iter().max().unwrap());
         let mut memory = vec![0; needed];

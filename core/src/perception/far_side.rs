@@ -6,10 +6,10 @@
 //! shape", 1967), so that a round bar gets its exact back, a wire its other half, and a strip that was seen face on a
 //! thickness like its width.
 
-use super::cleaning::Cleaned;
+use super::cleaning::{self, Cleaned};
 use super::visibility;
 use crate::geometry::{Neighbour, Point, PointTree, PointTreeSlots, Vector, any_perpendicular};
-use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
+use crate::memory::{Arena, OutOfMemory, array_bytes};
 
 /// Largest radius of the balls, metres. Thicker things get a back that is too near, but nothing reaches around them.
 const MAX_RADIUS: f32 = 0.015;
@@ -39,15 +39,17 @@ pub(crate) const fn max_points(points: usize) -> usize {
     points.saturating_add(points / 2)
 }
 
-/// Bytes of working memory for a cloud of `points`, some of which the result keeps.
+/// Bytes of what is kept of a cloud of `points` with its far side.
+pub(crate) const fn bytes(points: usize) -> usize {
+    cleaning::bytes(max_points(points))
+}
+
+/// Bytes of working memory for a cloud of `points`.
 pub(crate) const fn scratch_bytes(points: usize) -> usize {
     let all = max_points(points);
     array_bytes::<Point>(all)
         .saturating_add(array_bytes::<u32>(all).saturating_mul(2))
-        .saturating_add(array_bytes::<Vector>(all))
-        .saturating_add(array_bytes::<f32>(all))
-        .saturating_add(array_bytes::<u8>(all).saturating_mul(2))
-        .saturating_add(larger(array_bytes::<u8>(points), PointTree::scratch_bytes(all)))
+        .saturating_add(array_bytes::<u8>(points))
 }
 
 /// Adds the far side of a cloud to `slots`, which hold the cloud and have room for [`max_points`], as far as its
@@ -60,9 +62,12 @@ pub(crate) fn add<'s>(
 ) -> Result<Cleaned<'s>, OutOfMemory> {
     let count = seen.normals.len();
     let most = max_points(count);
-    let points = arena.slice::<Point>(most)?;
+    let (normals, spacings) = (arena.unset::<Vector>(most)?, arena.unset::<f32>(most)?);
+    let (is_excluded, is_guessed) = (arena.unset::<u8>(most)?, arena.unset::<u8>(most)?);
+    let mut scratch = arena.scratch();
+    let points = scratch.unset::<Point>(most)?;
     // Index of the point that was seen, its own or that of the mirrored one, in the old tree and in the caller's cloud.
-    let (sources, names) = (arena.slice::<u32>(most)?, arena.slice::<u32>(most)?);
+    let (sources, names) = (scratch.unset::<u32>(most)?, scratch.unset::<u32>(most)?);
     points[..count].copy_from_slice(slots.tree().points());
     for (slot, index) in sources[..count].iter_mut().zip(0..) {
         *slot = index;
@@ -74,14 +79,14 @@ pub(crate) fn add<'s>(
         stride: 1,
         found: 0,
     };
-    find(&slots.tree(), &seen, viewpoints, arena.scratch(), far)?;
+    find(&slots.tree(), &seen, viewpoints, scratch, far)?;
     let all = count + far.count;
     for (name, &source) in names.iter_mut().zip(&sources[..all]) {
         *name = slots.tree().order()[source as usize];
     }
-    slots.fill(&points[..all], arena.scratch())?;
-    let (normals, spacings) = (arena.slice::<Vector>(all)?, arena.slice::<f32>(all)?);
-    let (is_excluded, is_guessed) = (arena.slice::<u8>(all)?, arena.slice::<u8>(all)?);
+    slots.fill(&points[..all]);
+    let (normals, spacings) = (&mut normals[..all], &mut spacings[..all]);
+    let (is_excluded, is_guessed) = (&mut is_excluded[..all], &mut is_guessed[..all]);
     for (place, &index) in slots.tree().order().iter().enumerate() {
         let (source, is_far) = (sources[index as usize] as usize, index as usize >= count);
         normals[place] = if is_far { -seen.normals[source] } else { seen.normals[source] };
@@ -132,9 +137,9 @@ fn find(
 ) -> Result<(), OutOfMemory> {
     let Cleaned { normals, spacings, is_excluded, .. } = seen;
     let is_edge = scratch.slice::<u8>(normals.len())?;
-    for (index, flag) in is_edge.iter_mut().enumerate() {
-        *flag = u8::from(is_at_edge(tree, normals, index));
-    }
+    tree.for_each_k_nearest::<NEIGHBOURS>(|index, neighbours| {
+        is_edge[index] = u8::from(is_at_edge(tree, normals, index, neighbours));
+    });
     for of in (0..normals.len()).filter(|&index| is_excluded[index] == 0) {
         let (point, normal) = (tree.points()[of], normals[of]);
         let view = visibility::best_view(tree, (&point, &normal), spacings[of], viewpoints);
@@ -186,13 +191,12 @@ fn radius_beside_ray(offset: &Vector, inwards: &Vector, way: &Vector, slack: f32
 }
 
 /// Whether a point is at the end of its surface: its neighbours are on one side.
-fn is_at_edge(tree: &PointTree, normals: &[Vector], index: usize) -> bool {
+fn is_at_edge(tree: &PointTree, normals: &[Vector], index: usize, neighbours: &[Neighbour]) -> bool {
     let (point, normal) = (tree.points()[index], normals[index]);
     let ahead = any_perpendicular(normal);
     let aside = normal.cross(&ahead);
-    let mut found = [Neighbour::default(); NEIGHBOURS];
     let mut angles = heapless::Vec::<f32, NEIGHBOURS>::new();
-    for neighbour in tree.k_nearest(&point, &mut found) {
+    for neighbour in neighbours {
         let offset = tree.points()[neighbour.index as usize] - point;
         let is_on_surface = offset.dot(&normal).abs() < 0.8 * offset.norm();
         if neighbour.distance_squared > 0.0 && is_on_surface {
@@ -209,7 +213,7 @@ fn is_at_edge(tree: &PointTree, normals: &[Vector], index: usize) -> bool {
 mod tests {
     use super::*;
     use crate::memory::model_bytes;
-    use crate::perception::{cleaning, visibility};
+    use crate::perception::visibility;
     use crate::random::Random;
 
     const EYE: Point = Point::new(0.6, 0.0, 0.1);
@@ -219,14 +223,15 @@ mod tests {
         let n = points.len();
         let needed = model_bytes(
             PointTree::bytes(max_points(n))
-                + cleaning::scratch_bytes(n)
-                + scratch_bytes(n)
-                + PointTree::scratch_bytes(n),
+                + cleaning::bytes(n)
+                + bytes(n)
+                + cleaning::scratch_bytes(n).max(scratch_bytes(n)),
         );
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let mut slots = PointTreeSlots::new(max_points(n), &mut arena).unwrap();
         let seen = cleaning::clean(points, normals, true, &mut slots, &mut arena).unwrap();
+        cleaning::spacing::measure(&slots.tree(), seen.spacings);
         if !visibility::explain(&slots.tree(), seen.normals, seen.spacings, &[EYE]) {
             return Vec::new();
         }

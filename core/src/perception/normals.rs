@@ -38,9 +38,9 @@ pub(crate) fn complete(
         _ => orientation::orient(tree, normals, spacings, viewpoints, up, scratch),
     };
     if missing == normals.len() {
-        for (normal, point) in normals.iter_mut().zip(tree.points()) {
-            *normal = fit(tree, point);
-        }
+        tree.for_each_k_nearest::<NEIGHBOURS>(|index, neighbours| {
+            normals[index] = fit(tree, &tree.points()[index], neighbours);
+        });
         orient(normals, scratch)?;
         return Ok(0);
     }
@@ -68,10 +68,8 @@ fn leading_sign(normal: &Vector) -> bool {
     normal.iter().find(|x| **x != 0.0).is_some_and(|x| *x > 0.0)
 }
 
-/// The direction, of either sign, in which the neighbourhood of `point` is thinnest.
-fn fit(tree: &PointTree, point: &Point) -> Vector {
-    let mut found = [Neighbour::default(); NEIGHBOURS];
-    let neighbours = tree.k_nearest(point, &mut found);
+/// The direction, of either sign, in which the `neighbours` of `point` are thinnest.
+fn fit(tree: &PointTree, point: &Point, neighbours: &[Neighbour]) -> Vector {
     let offsets = || neighbours.iter().map(|n| tree.points()[n.index as usize] - point);
     let mean = offsets().sum::<Vector>() / neighbours.len() as f32;
     // Scaled by the reach, so that the squares of millimetres keep their precision.
@@ -103,14 +101,14 @@ fn follow_neighbours(
     for index in (0..normals.len()).filter(|&index| is_missing[index] == 1) {
         let point = &tree.points()[index];
         let mut found = [Neighbour::default(); NEIGHBOURS];
-        let around: Vector = tree
-            .k_nearest(point, &mut found)
+        let neighbours = tree.k_nearest(point, &mut found);
+        let around: Vector = neighbours
             .iter()
             .map(|neighbour| neighbour.index as usize)
             .filter(|&other| is_missing[other] == 0)
             .map(|other| normals[other])
             .sum();
-        let normal = fit(tree, point);
+        let normal = fit(tree, point, neighbours);
         let like = if around == Vector::zeros() { up } else { around };
         normals[index] = if normal.dot(&like) < 0.0 { -normal } else { normal };
     }
@@ -144,7 +142,7 @@ mod tests {
         let mut memory = vec![0; sampling::sample_bytes(n)];
         sampling::sample(&shape.mesh(), 1, &mut points, &mut truth, &mut memory).unwrap();
 
-        let needed = model_bytes(PointTree::bytes(n) + PointTree::scratch_bytes(n).max(scratch_bytes(n)));
+        let needed = model_bytes(PointTree::bytes(n) + scratch_bytes(n));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let points: Vec<Point> = points.into_iter().map(Into::into).collect();
@@ -194,7 +192,7 @@ mod tests {
             })
             .collect();
         let n = points.len();
-        let needed = model_bytes(PointTree::bytes(n) + PointTree::scratch_bytes(n).max(scratch_bytes(n)));
+        let needed = model_bytes(PointTree::bytes(n) + scratch_bytes(n));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let tree = PointTree::build(&points, &mut arena).unwrap();

@@ -234,12 +234,14 @@ fn opposing_side(
     let mut side = None;
     tree.bvh().visit_near(&point, MAX_THICKNESS * MAX_THICKNESS, |items, mut limit| {
         for other in items {
+            let cosine = normals[other].dot(&normal);
+            if !(cosine < -OPPOSING || cosine > OPPOSING && is_free(other)) {
+                continue;
+            }
             let way = tree.points()[other] - point;
             let (distance_squared, along) = (way.norm_squared(), way.dot(&normal));
-            let cosine = normals[other].dot(&normal);
-            let is_opposing = (cosine < -OPPOSING || cosine > OPPOSING && is_free(other))
-                && along * along > OPPOSING * OPPOSING * distance_squared;
-            if is_opposing && distance_squared < limit {
+            let is_across = along * along > OPPOSING * OPPOSING * distance_squared;
+            if is_across && distance_squared < limit {
                 (limit, side) = (distance_squared, Some(along.signum()));
             }
         }

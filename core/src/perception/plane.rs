@@ -37,12 +37,25 @@ impl Plane {
             let [a, b, c] = core::array::from_fn(|_| points[random.next_u32() as usize % points.len()]);
             let Some(normal) = (b - a).cross(&(c - a)).try_normalize(tolerance * tolerance) else { continue };
             let plane = Self { origin: a, normal };
-            let count = points.iter().filter(|p| plane.distance(p) < tolerance).count();
-            if count > most {
+            if let Some(count) = plane.count_above(points, tolerance, most) {
                 (best, most) = (Some(plane), count);
             }
         }
         (0..FITS).fold(best, |plane, _| plane.map(|plane| plane.fitted(points, tolerance)))
+    }
+
+    /// The number of points within `tolerance` metres, if they are more than `most`.
+    fn count_above(&self, points: &[Point], tolerance: f32, most: usize) -> Option<usize> {
+        let (mut count, mut left) = (0, points.len());
+        for part in points.chunks(256) {
+            // Without a branch, so that several are counted at once.
+            count += part.iter().map(|p| u32::from(self.distance(p) < tolerance)).sum::<u32>() as usize;
+            left -= part.len();
+            if count + left <= most {
+                return None;
+            }
+        }
+        (count > most).then_some(count)
     }
 
     /// Distance of a point, metres.

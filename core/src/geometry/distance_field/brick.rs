@@ -30,6 +30,26 @@ pub(super) const BESIDE: [Nodes; BRICK_NODES] = neighbours(1);
 /// The up to 20 neighbours of each node across edges and corners.
 pub(super) const DIAGONAL: [Nodes; BRICK_NODES] = neighbours(3);
 
+/// A place in a padded brick that is no node.
+pub(super) const NOWHERE: usize = PADDED - 1;
+/// The neighbours of each node before and after it along each axis; [`NOWHERE`] where there is none.
+pub(super) const ALONG: [[[u8; 2]; 3]; BRICK_NODES] = {
+    let mut all = [[[NOWHERE as u8; 2]; 3]; BRICK_NODES];
+    let mut i = 0;
+    while i < 3 * BRICK_NODES {
+        let (node, axis) = (i / 3, i % 3);
+        let at = coordinates(node)[axis];
+        if at > 0 {
+            all[node][axis][0] = (node - STEP[axis]) as u8;
+        }
+        if at < BLOCK as usize {
+            all[node][axis][1] = (node + STEP[axis]) as u8;
+        }
+        i += 1;
+    }
+    all
+};
+
 /// Coordinates of a node within its brick.
 pub(super) const fn coordinates(node: usize) -> [usize; 3] {
     [node % SIDE, node / SIDE % SIDE, node / (SIDE * SIDE)]
@@ -121,6 +141,10 @@ mod tests {
         assert_eq!(BESIDE[0], 1 << 1 | 1 << 5 | 1 << 25);
         for node in 0..BRICK_NODES {
             assert_eq!(dilate(1 << node), 1 << node | BESIDE[node] | DIAGONAL[node]);
+            let along = ALONG[node].iter().flatten().map(|&other| usize::from(other));
+            let along: Vec<usize> = along.filter(|&other| other != NOWHERE).collect();
+            assert_eq!(along.iter().fold(0, |all, other| all | 1 << other), BESIDE[node]);
+            assert!(ALONG[node].iter().all(|[before, after]| usize::from(*before) > node || before < after));
         }
         let mut values = [0.0; PADDED];
         for node in [3, 8, 77, 124] {

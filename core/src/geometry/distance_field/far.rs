@@ -2,7 +2,7 @@
 
 use super::brick::{BLOCK, STEP};
 use super::frame::Frame;
-use super::layout::Layout;
+use super::layout::{Layout, MOST_BLOCKS_ALONG};
 use super::nearest::{NONE, Nearest};
 use super::{Entry, understated};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
@@ -23,7 +23,9 @@ pub(super) struct Far<'a> {
 
 /// Bytes of working memory for a grid of `blocks`.
 pub(super) const fn scratch_bytes(blocks: usize) -> usize {
-    array_bytes::<f32>(blocks).saturating_mul(2).saturating_add(array_bytes::<u32>(blocks))
+    array_bytes::<f32>(blocks)
+        .saturating_add(array_bytes::<u32>(blocks))
+        .saturating_add(array_bytes::<u8>(blocks))
 }
 
 /// Distance to a block with a brick up to which nearest triangles spread, blocks.
@@ -37,44 +39,40 @@ fn gap_squared(steps: usize) -> f32 {
     gap * gap
 }
 
+/// The least square of the distance of the block at place `at` of a line, by those of all blocks of the line.
+#[inline]
+fn least_along(squares: &[f32], at: usize) -> f32 {
+    let mut least = squares[at];
+    // Outwards, until nothing further away can be closer.
+    for steps in 1..squares.len() {
+        let gap = gap_squared(steps);
+        if gap >= least || steps > at && at + steps >= squares.len() {
+            break;
+        }
+        if steps <= at {
+            least = least.min(squares[at - steps] + gap);
+        }
+        if at + steps < squares.len() {
+            least = least.min(squares[at + steps] + gap);
+        }
+    }
+    least
+}
+
+/// The square of the distance to a brick, in blocks, that stands in a block's entry until its distance is known.
+fn to_brick(entry: u32) -> f32 {
+    if let Entry::Brick(_) = Entry::unpack(entry) { 0.0 } else { f32::from_bits(entry) }
+}
+
 impl Far<'_> {
-    pub(super) fn fill(self, mut scratch: Arena) -> Result<(), OutOfMemory> {
-        let mut from = scratch.slice::<f32>(self.grid.len())?;
-        let mut to = scratch.slice::<f32>(self.grid.len())?;
-        for (distance, &entry) in from.iter_mut().zip(self.grid.iter()) {
-            *distance = if let Entry::Brick(_) = Entry::unpack(entry) { 0.0 } else { f32::INFINITY };
-        }
-        let mut step = 1;
-        for &count in &self.layout.blocks {
-            let count = count as usize;
-            for block in 0..from.len() {
-                let at = block / step % count;
-                let mut least = from[block];
-                // Outwards, until nothing further away can be closer.
-                for steps in 1..count {
-                    let gap = gap_squared(steps);
-                    if gap >= least || steps > at && at + steps >= count {
-                        break;
-                    }
-                    if steps <= at {
-                        least = least.min(from[block - steps * step] + gap);
-                    }
-                    if at + steps < count {
-                        least = least.min(from[block + steps * step] + gap);
-                    }
-                }
-                to[block] = least;
-            }
-            core::mem::swap(&mut from, &mut to);
-            step *= count;
-        }
-        let triangles = scratch.slice::<u32>(self.grid.len())?;
-        self.ask_neighbours(from, to, triangles);
-        let distances = from.iter().zip(to.iter());
-        for ((entry, &sign), (&squared, &to_triangle)) in self.grid.iter_mut().zip(self.signs).zip(distances)
-        {
+    pub(super) fn fill(mut self, mut scratch: Arena) -> Result<(), OutOfMemory> {
+        self.measure_to_bricks();
+        let squares = scratch.unset::<f32>(self.grid.len())?;
+        let triangles = scratch.unset::<u32>(self.grid.len())?;
+        self.ask_neighbours(squares, triangles, scratch.unset(self.grid.len())?);
+        for ((entry, &sign), &to_triangle) in self.grid.iter_mut().zip(self.signs).zip(squares.iter()) {
             if let Entry::Far(_) = Entry::unpack(*entry) {
-                let to_brick = libm::sqrtf(squared) * BLOCK as f32;
+                let to_brick = libm::sqrtf(to_brick(*entry)) * BLOCK as f32;
                 let to_triangle = understated(libm::sqrtf(to_triangle));
                 let distance = if to_triangle.is_finite() { to_brick.max(to_triangle) } else { to_brick };
                 *entry = Entry::Far(if sign == super::sign::INSIDE { -distance } else { distance }).pack();
@@ -83,46 +81,80 @@ impl Far<'_> {
         Ok(())
     }
 
+    /// Writes the square of the distance to the closest brick, in blocks, to the entry of every block without one.
+    fn measure_to_bricks(&mut self) {
+        for entry in self.grid.iter_mut() {
+            if let Entry::Far(_) = Entry::unpack(*entry) {
+                *entry = f32::INFINITY.to_bits();
+            }
+        }
+        let mut step = 1;
+        for &count in &self.layout.blocks {
+            let count = count as usize;
+            let mut line = [0.0; MOST_BLOCKS_ALONG];
+            let line = &mut line[..count];
+            for layer in (0..self.grid.len()).step_by(step * count) {
+                for first in layer..layer + step {
+                    let blocks = || (first..).step_by(step).take(count);
+                    for (square, block) in line.iter_mut().zip(blocks()) {
+                        *square = to_brick(self.grid[block]);
+                    }
+                    for (at, block) in blocks().enumerate() {
+                        if line[at] > 0.0 {
+                            self.grid[block] = least_along(line, at).to_bits();
+                        }
+                    }
+                }
+            }
+            step *= count;
+        }
+    }
+
     /// Finds a near triangle for the centre of every block that is close to a brick, and the square of the distance to it, in voxels;
-    /// infinite for others. `to_bricks` are the squares of the distances to bricks, in blocks.
-    fn ask_neighbours(&self, to_bricks: &[f32], squares: &mut [f32], triangles: &mut [u32]) {
+    /// infinite for others. `changed` is working memory, as is `triangles`.
+    fn ask_neighbours(&self, squares: &mut [f32], triangles: &mut [u32], changed: &mut [u8]) {
         squares.fill(f32::INFINITY);
         triangles.fill(NONE);
-        for round in 0..ROUNDS {
-            let mut changed = false;
+        // The round in which a block got its triangle, counted from one.
+        changed.fill(0);
+        for round in 1..=ROUNDS {
+            let mut has_changed = false;
             for k in 0..self.grid.len() {
                 // There and back, so that it spreads far at once.
-                let block = if round % 2 == 0 { k } else { self.grid.len() - 1 - k };
-                let is_far = matches!(Entry::unpack(self.grid[block]), Entry::Far(_));
-                if !is_far || to_bricks[block] > CLOSE * CLOSE {
+                let block = if round % 2 == 1 { k } else { self.grid.len() - 1 - k };
+                let to_brick = to_brick(self.grid[block]);
+                if to_brick == 0.0 || to_brick > CLOSE * CLOSE {
                     continue;
                 }
                 let (place, centre) = (self.layout.place(block), self.layout.centre(block));
                 for (axis, step) in STEP.into_iter().enumerate() {
                     for forward in [false, true] {
                         let Some(next) = self.layout.beside(place, axis, forward) else { continue };
+                        // What has not changed since the round before was tried then.
                         let triangle = match Entry::unpack(self.grid[next]) {
                             // The middle of the side that they have in common.
-                            Entry::Brick(brick) => {
+                            Entry::Brick(brick) if round == 1 => {
                                 let middle = STEP.iter().sum::<usize>() * (BLOCK as usize / 2);
                                 let half = BLOCK as usize / 2 * step;
                                 let node = if forward { middle - half } else { middle + half };
                                 self.nearest.triangles[brick][node]
                             }
-                            Entry::Far(_) => triangles[next],
+                            Entry::Far(_) if usize::from(changed[next]) + 1 >= round => triangles[next],
+                            _ => continue,
                         };
                         if triangle == NONE || triangle == triangles[block] {
                             continue;
                         }
                         let square = self.frames[triangle as usize].distance_squared(&centre);
                         if square < squares[block] {
-                            (squares[block], triangles[block]) = (square, triangle);
-                            changed = true;
+                            (squares[block], triangles[block], changed[block]) =
+                                (square, triangle, round as u8);
+                            has_changed = true;
                         }
                     }
                 }
             }
-            if !changed {
+            if !has_changed {
                 break;
             }
         }

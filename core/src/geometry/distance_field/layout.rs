@@ -19,6 +19,8 @@ pub(super) const fn max_blocks(voxels: usize) -> usize {
 
 /// Largest number of voxels along the largest extent.
 const FINEST: f32 = 400.0;
+/// Largest number of blocks along an axis: those of the voxels along the largest extent, and what the band and rounding add.
+pub(super) const MOST_BLOCKS_ALONG: usize = FINEST as usize / BLOCK as usize + 3;
 /// Least voxel size, metres, unless the largest extent then has fewer than `FEWEST` voxels.
 const FINEST_METRES: f32 = 0.8e-3;
 /// Number of voxels along the largest extent up to which voxels may be finer than `FINEST_METRES`.
@@ -60,6 +62,7 @@ impl Layout {
         if count > max_blocks as u64 {
             return None;
         }
+        debug_assert!(blocks.iter().all(|&n| n <= MOST_BLOCKS_ALONG as u64));
         let blocks = blocks.map(|n| n as u32);
         let cells = blocks.map(|n| (n * BLOCK) as f32);
         let origin = aabb.centre() - Vector::from(cells) * (0.5 * voxel);
@@ -160,10 +163,14 @@ impl Layout {
         (place[axis] < self.blocks[axis]).then(|| self.index(place))
     }
 
+    /// Where the first node of a block is, in voxels.
+    pub(super) fn first_node(&self, block: usize) -> Vector {
+        Vector::from(self.place(block).map(|i| (i * BLOCK) as f32))
+    }
+
     /// The centre of a block, in voxels.
     pub(super) fn centre(&self, block: usize) -> Vector {
-        let half = BLOCK as f32 / 2.0;
-        Vector::from(self.place(block).map(|i| (i * BLOCK) as f32 + half))
+        self.first_node(block).add_scalar(BLOCK as f32 / 2.0)
     }
 
     /// Corners in voxels, from the origin of the grid.

@@ -5,8 +5,8 @@
 //! to its neighbours. That may miss the nearest of many small triangles, with an error below the size of one of them.
 
 use super::brick::{
-    ACROSS, ALL, BESIDE, BLOCK, BRICK_NODES, COORDINATES, DIAGONAL, HIGH, LOW, Nodes, PADDED, SIDE, STEP,
-    compare, dilate, each,
+    ACROSS, ALL, ALONG, BLOCK, BRICK_NODES, COORDINATES, DIAGONAL, HIGH, LOW, NOWHERE, Nodes, PADDED, SIDE,
+    STEP, compare, dilate, each,
 };
 use super::frame::Frame;
 use super::layout::Layout;
@@ -114,12 +114,17 @@ impl<'s> Nearest<'s> {
             for (brick, &block) in places.iter().enumerate() {
                 let known = self.known[brick];
                 let fresh = dilate(known) & !known & ALL;
-                for node in each(fresh) {
-                    self.ask_neighbours(brick, block, node, known, layout, frames);
-                }
-                changed |= fresh != 0;
-                self.known[brick] |= fresh;
                 self.fresh[brick] = fresh;
+                if fresh == 0 {
+                    continue;
+                }
+                let first = layout.first_node(block as usize);
+                let distances = self.known_distances(brick, known);
+                for node in each(fresh) {
+                    self.ask_neighbours(brick, first, node, &distances, frames);
+                }
+                changed = true;
+                self.known[brick] |= fresh;
             }
             if !changed {
                 break;
@@ -137,10 +142,15 @@ impl<'s> Nearest<'s> {
                     continue;
                 }
                 let wrong = self.too_far(brick);
-                for node in each(wrong) {
-                    self.distances[brick][node] *= self.distances[brick][node];
-                    self.ask_neighbours(brick, block, node, ALL, layout, frames);
-                    self.distances[brick][node] = libm::sqrtf(self.distances[brick][node]);
+                if wrong > 0 {
+                    let first = layout.first_node(block as usize);
+                    let mut distances = self.known_distances(brick, ALL);
+                    for node in each(wrong) {
+                        self.distances[brick][node] *= self.distances[brick][node];
+                        self.ask_neighbours(brick, first, node, &distances, frames);
+                        self.distances[brick][node] = libm::sqrtf(self.distances[brick][node]);
+                        distances[node] = self.distances[brick][node];
+                    }
                 }
                 self.fresh[brick] = wrong;
                 changed |= wrong != 0;
@@ -155,11 +165,10 @@ impl<'s> Nearest<'s> {
         for (distances, &block) in self.distances.iter_mut().zip(places) {
             for (node, distance) in distances[..BRICK_NODES].iter_mut().enumerate() {
                 if distance.is_infinite() {
-                    let place = layout.place(block as usize);
-                    let local = [0, 1, 2].map(|i| (place[i] * BLOCK) as f32 + COORDINATES[i][node]);
-                    let point = layout.in_object(&local.into());
-                    let closest = surface.closest_point(&point);
-                    *distance = (layout.in_voxels(&closest) - Vector::from(local)).norm();
+                    let local = layout.first_node(block as usize)
+                        + Vector::from([0, 1, 2].map(|i| COORDINATES[i][node]));
+                    let closest = surface.closest_point(&layout.in_object(&local));
+                    *distance = (layout.in_voxels(&closest) - local).norm();
                 }
             }
         }
@@ -189,44 +198,44 @@ impl<'s> Nearest<'s> {
         }
     }
 
-    /// Tries the triangles of a node's known neighbours. The node's distance is squared.
+    /// The distances of the known nodes of a brick; infinite for all others.
+    fn known_distances(&self, brick: usize, known: Nodes) -> [f32; PADDED] {
+        let mut distances = self.distances[brick];
+        each(ALL & !known).for_each(|node| distances[node] = f32::INFINITY);
+        distances[NOWHERE] = f32::INFINITY;
+        distances
+    }
+
+    /// Tries the triangles of a node's neighbours in a brick whose first node is at `first`. `known` are the distances of the
+    /// known nodes. The node's own distance is squared.
     fn ask_neighbours(
         &mut self,
         brick: usize,
-        block: u32,
+        first: Vector,
         node: usize,
-        known: Nodes,
-        layout: &Layout,
+        known: &[f32; PADDED],
         frames: &[Frame],
     ) {
-        let (distances, triangles) = (&self.distances[brick], &self.triangles[brick]);
-        let place = layout.place(block as usize);
-        let point = Vector::from([0, 1, 2].map(|i| (place[i] * BLOCK) as f32 + COORDINATES[i][node]));
-        let (mut best, mut least) = (triangles[node], distances[node]);
+        let triangles = &self.triangles[brick];
+        let point = first + Vector::from([0, 1, 2].map(|i| COORDINATES[i][node]));
+        let (mut best, mut least) = (triangles[node], self.distances[brick][node]);
         // Down the distances: to the lowest neighbour along an axis, and to the one across from where all three go down.
-        let mut lowest = None::<usize>;
+        let mut lowest = NOWHERE;
         let mut across = node;
-        let beside = BESIDE[node] & known;
-        for step in STEP {
-            let before = (node >= step && beside >> (node - step) & 1 == 1).then(|| node - step);
-            let after = (beside >> node >> step & 1 == 1).then_some(node + step);
-            let (end, lower) = match (before, after) {
-                (Some(a), Some(b)) if distances[b] < distances[a] => (b, across + step),
-                (Some(a), _) => (a, across - step),
-                (None, Some(b)) => (b, across + step),
-                (None, None) => continue,
+        for (step, ends) in STEP.into_iter().zip(&ALONG[node]) {
+            let [before, after] = ends.map(usize::from);
+            let (end, lower) = match known[after] < known[before] {
+                true => (after, across + step),
+                false if known[before] < f32::INFINITY => (before, across - step),
+                false => continue,
             };
             across = lower;
-            lowest = Some(
-                lowest.map_or(end, |lowest| if distances[end] < distances[lowest] { end } else { lowest }),
-            );
+            lowest = if known[end] < known[lowest] { end } else { lowest };
         }
-        if lowest.is_none() {
-            lowest =
-                each(DIAGONAL[node] & known).reduce(|a, b| if distances[b] < distances[a] { b } else { a });
+        if lowest == NOWHERE {
+            lowest = each(DIAGONAL[node]).fold(NOWHERE, |a, b| if known[b] < known[a] { b } else { a });
         }
-        let across = (known >> across & 1 == 1).then_some(across);
-        for near in [lowest, across].into_iter().flatten() {
+        for near in [lowest, across].into_iter().filter(|&near| known[near] < f32::INFINITY) {
             let triangle = triangles[near];
             if triangle == best || triangle == NONE {
                 continue;

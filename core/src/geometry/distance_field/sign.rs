@@ -6,7 +6,7 @@
 //! For the remaining nodes, very close to the mesh, the plane of the nearest triangle decides, or their own winding number.
 
 use super::brick::{
-    ACROSS, ALL, BESIDE, BLOCK, BRICK_NODES, DIAGONAL, HIGH, LOW, Nodes, STEP, compare, coordinates, each,
+    ACROSS, ALL, BESIDE, BRICK_NODES, DIAGONAL, HIGH, LOW, Nodes, STEP, compare, coordinates, each,
 };
 use super::frame::Frame;
 use super::layout::Layout;
@@ -131,9 +131,8 @@ impl Sides<'_, '_> {
     }
 
     fn local(&self, brick: usize, node: usize) -> Vector {
-        let place = self.layout.place(self.places[brick] as usize);
-        let at = coordinates(node);
-        Vector::from([0, 1, 2].map(|i| (place[i] * BLOCK) as f32 + at[i] as f32))
+        let first = self.layout.first_node(self.places[brick] as usize);
+        first + Vector::from(coordinates(node).map(|i| i as f32))
     }
 
     fn unknown(&self, brick: usize) -> Nodes {
@@ -300,7 +299,7 @@ impl Sides<'_, '_> {
             self.sides[1][brick] = inside;
             let distances = &self.nearest.distances[brick];
             for (node, to) in nodes[brick * BRICK_NODES..][..BRICK_NODES].iter_mut().enumerate() {
-                let size = (distances[node] * (1.0 / QUANTUM) + 0.5).min(f32::from(i16::MAX)) as i16;
+                let size = (distances[node] * (1.0 / QUANTUM) + 0.5).min(f32::from(i16::MAX)) as i32 as i16;
                 *to = if inside >> node & 1 == 0 { size } else { -size };
             }
         }

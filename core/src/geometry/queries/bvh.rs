@@ -1,6 +1,6 @@
-//! A tree of bounding boxes over items that have a box each: triangles or points.
+//! A tree of bounding boxes over items that have a box each: triangles, points or boxes.
 //!
-//! Knows only boxes; what an item is, and how far or where it is hit, comes from the caller as a closure.
+//! Knows only boxes; how far or where an item is hit, comes from the caller as a closure.
 
 use super::ray::Ray;
 use crate::geometry::{Aabb, Point};
@@ -34,6 +34,63 @@ impl Node {
     }
 }
 
+/// What a tree is built over.
+pub(crate) trait Bounded {
+    /// The box around it.
+    fn bounds(&self) -> Aabb;
+
+    /// Twice the coordinate of the box's centre along an axis.
+    fn centre(&self, axis: usize) -> f32;
+}
+
+impl Bounded for Point {
+    fn bounds(&self) -> Aabb {
+        Aabb { min: *self, max: *self }
+    }
+
+    fn centre(&self, axis: usize) -> f32 {
+        self[axis] + self[axis]
+    }
+}
+
+impl Bounded for [Point; 3] {
+    fn bounds(&self) -> Aabb {
+        let [a, b, c] = self;
+        Aabb { min: lesser(&lesser(a, b), c), max: greater(&greater(a, b), c) }
+    }
+
+    fn centre(&self, axis: usize) -> f32 {
+        let [a, b, c] = self.map(|corner| corner[axis]);
+        a.min(b).min(c) + a.max(b).max(c)
+    }
+}
+
+impl Bounded for [Point; 2] {
+    /// A box, by its corners.
+    fn bounds(&self) -> Aabb {
+        Aabb { min: self[0], max: self[1] }
+    }
+
+    fn centre(&self, axis: usize) -> f32 {
+        self[0][axis] + self[1][axis]
+    }
+}
+
+/// The lesser coordinates of two points, all of which are numbers.
+fn lesser(a: &Point, b: &Point) -> Point {
+    Point::from([0, 1, 2].map(|i| if b[i] < a[i] { b[i] } else { a[i] }))
+}
+
+/// The greater coordinates of two points, all of which are numbers.
+fn greater(a: &Point, b: &Point) -> Point {
+    Point::from([0, 1, 2].map(|i| if b[i] > a[i] { b[i] } else { a[i] }))
+}
+
+/// The smallest box around two that are not both empty.
+fn union(a: &Aabb, b: &Aabb) -> Aabb {
+    Aabb { min: lesser(&a.min, &b.min), max: greater(&a.max, &b.max) }
+}
+
 /// A tree over `n` items. Queries name items by their position in the tree's order.
 #[derive(Clone, Copy)]
 pub(crate) struct Bvh<'m> {
@@ -47,7 +104,7 @@ const BINS: usize = 12;
 /// Depth from which nodes are halved by count, so that no tree is deeper than `MAX_DEPTH`.
 const HEURISTIC_DEPTH: u32 = 28;
 /// Largest depth, which bounds every traversal stack: `HEURISTIC_DEPTH` plus the halvings of `mesh::MAX_COUNT` items.
-const MAX_DEPTH: usize = 60;
+pub(super) const MAX_DEPTH: usize = 60;
 
 impl<'m> Bvh<'m> {
     /// The most nodes that a tree over `items` may take: its leaves hold at least two.
@@ -55,30 +112,24 @@ impl<'m> Bvh<'m> {
         if items < 2 { 1 } else { items }
     }
 
-    /// Builds the tree over the items named in `order`, at least one, and puts them into tree order. `bounds` gives the box of
-    /// a named item, `nodes` takes [`max_nodes`](Self::max_nodes), and `centres`, working memory, one entry an
-    /// item.
-    pub(crate) fn build(
-        order: &mut [u32],
-        bounds: impl Fn(u32) -> Aabb,
-        nodes: &'m mut [Node],
-        centres: &mut [[f32; 3]],
-    ) -> Self {
-        // Twice the centres of the boxes, in the order of `order`, moved along with it.
-        for (centre, &item) in centres.iter_mut().zip(order.iter()) {
-            let aabb = bounds(item);
-            *centre = (aabb.min.coords + aabb.max.coords).into();
-        }
+    /// Builds the tree over `items`, at least one, and puts them into tree order, and their names in `order` with them.
+    /// `nodes` takes [`max_nodes`](Self::max_nodes).
+    pub(crate) fn build<B: Bounded>(order: &mut [u32], items: &mut [B], nodes: &'m mut [Node]) -> Self {
         let mut used = 1;
         let mut pending = heapless::Vec::<(usize, usize, usize, u32), { MAX_DEPTH + 2 }>::new();
         let mut next = Some((0, 0, order.len(), 0));
         while let Some((node, first, count, depth)) = next {
-            let items = &mut order[first..first + count];
-            let aabb = items.iter().fold(Aabb::EMPTY, |aabb, &item| aabb.union(&bounds(item)));
+            let run = &mut items[first..first + count];
+            // The boxes around the items and around their centres.
+            let (mut aabb, mut centres) = (Aabb::EMPTY, Aabb::EMPTY);
+            for bounds in run.iter().map(B::bounds) {
+                aabb = union(&aabb, &bounds);
+                centres = union(&centres, &(bounds.min + bounds.max.coords).bounds());
+            }
             nodes[node] =
                 Node { min: aabb.min.into(), max: aabb.max.into(), first: first as u32, count: count as u32 };
             if count > LEAF_ITEMS {
-                let middle = split(items, &mut centres[first..first + count], &bounds, depth);
+                let middle = split(&mut order[first..first + count], run, &centres, depth);
                 (nodes[node].first, nodes[node].count) = (used as u32, 0);
                 // Holds one sibling per level, so it cannot be full.
                 let _ = pending.push((used + 1, first + middle, count - middle, depth + 1));
@@ -128,20 +179,22 @@ impl<'m> Bvh<'m> {
         let mut stack = heapless::Vec::<(u32, f32), { MAX_DEPTH + 2 }>::new();
         let mut next = Some((0, distance(0)));
         while let Some((node, at)) = next {
-            if at > limit {
-                next = stack.pop();
-                continue;
+            next = None;
+            // Others may have come nearer since the node was put aside.
+            if at <= limit {
+                let node = &self.nodes[node as usize];
+                if let Some(items) = node.items() {
+                    limit = visit(items, limit);
+                } else {
+                    let [left, right] = node.children().map(|child| (child, distance(child)));
+                    let (near, far) = if right.1 < left.1 { (right, left) } else { (left, right) };
+                    if far.1 <= limit {
+                        let _ = stack.push(far);
+                    }
+                    next = Some(near).filter(|near| near.1 <= limit);
+                }
             }
-            let node = &self.nodes[node as usize];
-            if let Some(items) = node.items() {
-                limit = visit(items, limit);
-                next = stack.pop();
-            } else {
-                let [left, right] = node.children().map(|child| (child, distance(child)));
-                let (near, far) = if right.1 < left.1 { (right, left) } else { (left, right) };
-                let _ = stack.push(far);
-                next = Some(near);
-            }
+            next = next.or_else(|| stack.pop());
         }
     }
 
@@ -241,46 +294,41 @@ impl<'m> Bvh<'m> {
     }
 }
 
-/// Puts `items` (and their `centres`) into two groups of at least two and returns the size of the first.
-fn split(items: &mut [u32], centres: &mut [[f32; 3]], bounds: &impl Fn(u32) -> Aabb, depth: u32) -> usize {
-    let extent = Aabb::of(bytemuck::cast_slice::<_, Point>(centres).iter());
-    let axis = extent.extents().imax();
-    let (low, width) = (extent.min[axis], extent.extents()[axis]);
+/// Puts `items` and their names into two groups of at least two and returns the size of the first. `centres` is the box
+/// around twice their centres.
+fn split<B: Bounded>(order: &mut [u32], items: &mut [B], centres: &Aabb, depth: u32) -> usize {
+    let axis = centres.extents().imax();
+    let (low, width) = (centres.min[axis], centres.extents()[axis]);
     if depth < HEURISTIC_DEPTH && width > 0.0 {
-        let bin = |centre: &[f32; 3]| (((centre[axis] - low) / width * BINS as f32) as usize).min(BINS - 1);
-        if let Some(cut) = cheapest_cut(items, centres, bounds, bin) {
-            return partition(items, centres, |centre| bin(centre) < cut);
+        let bin = |item: &B| (((item.centre(axis) - low) / width * BINS as f32) as u32).min(BINS as u32 - 1);
+        if let Some(cut) = cheapest_cut(items, bin) {
+            return partition(order, items, |item| bin(item) < cut as u32);
         }
     }
-    halve(items, centres, axis)
+    halve(order, items, axis)
 }
 
 /// The first bin of the right-hand group where the surface-area heuristic is least, if any cut leaves two items
 /// on each side.
-fn cheapest_cut(
-    items: &[u32],
-    centres: &[[f32; 3]],
-    bounds: &impl Fn(u32) -> Aabb,
-    bin: impl Fn(&[f32; 3]) -> usize,
-) -> Option<usize> {
+fn cheapest_cut<B: Bounded>(items: &[B], bin: impl Fn(&B) -> u32) -> Option<usize> {
     let mut counts = [0_usize; BINS];
     let mut boxes = [Aabb::EMPTY; BINS];
-    for (&item, centre) in items.iter().zip(centres) {
-        let bin = bin(centre);
+    for item in items {
+        let bin = bin(item) as usize;
         counts[bin] += 1;
-        boxes[bin] = boxes[bin].union(&bounds(item));
+        boxes[bin] = union(&boxes[bin], &item.bounds());
     }
     let mut right_cost = [0.0; BINS];
     let (mut aabb, mut count) = (Aabb::EMPTY, 0);
     for bin in (1..BINS).rev() {
-        aabb = aabb.union(&boxes[bin]);
+        aabb = union(&aabb, &boxes[bin]);
         count += counts[bin];
         right_cost[bin] = aabb.half_area() * count as f32;
     }
     let (mut aabb, mut count) = (Aabb::EMPTY, 0);
     let mut best: Option<(f32, usize)> = None;
     for cut in 1..BINS {
-        aabb = aabb.union(&boxes[cut - 1]);
+        aabb = union(&aabb, &boxes[cut - 1]);
         count += counts[cut - 1];
         let cost = aabb.half_area() * count as f32 + right_cost[cut];
         if count >= 2 && items.len() - count >= 2 && best.is_none_or(|(least, _)| cost < least) {
@@ -290,40 +338,40 @@ fn cheapest_cut(
     best.map(|(_, cut)| cut)
 }
 
-/// Moves the items whose centre is `left` to the front and returns how many they are.
-fn partition(items: &mut [u32], centres: &mut [[f32; 3]], left: impl Fn(&[f32; 3]) -> bool) -> usize {
+/// Moves the items that are `left` to the front and returns how many they are.
+fn partition<B>(order: &mut [u32], items: &mut [B], left: impl Fn(&B) -> bool) -> usize {
     let mut middle = 0;
     for i in 0..items.len() {
-        if left(&centres[i]) {
+        if left(&items[i]) {
+            order.swap(middle, i);
             items.swap(middle, i);
-            centres.swap(middle, i);
             middle += 1;
         }
     }
     middle
 }
 
-/// Puts the half of the items with the lesser centres in front: quickselect, ties broken by item, so that the
+/// Puts the half of the items with the lesser centres in front: quickselect, ties broken by name, so that the
 /// result does not depend on how the sorting is done.
-fn halve(items: &mut [u32], centres: &mut [[f32; 3]], axis: usize) -> usize {
+fn halve<B: Bounded>(order: &mut [u32], items: &mut [B], axis: usize) -> usize {
     let middle = items.len() / 2;
     let (mut from, mut to) = (0, items.len());
     while to - from > 1 {
         // The pivot goes to the end; those before it are gathered at the front.
         let pivot = from + (to - from) / 2;
+        order.swap(pivot, to - 1);
         items.swap(pivot, to - 1);
-        centres.swap(pivot, to - 1);
-        let (value, item) = (centres[to - 1][axis], items[to - 1]);
+        let (value, name) = (items[to - 1].centre(axis), order[to - 1]);
         let mut store = from;
         for i in from..to - 1 {
-            if centres[i][axis].total_cmp(&value).then(items[i].cmp(&item)).is_lt() {
+            if items[i].centre(axis).total_cmp(&value).then(order[i].cmp(&name)).is_lt() {
+                order.swap(i, store);
                 items.swap(i, store);
-                centres.swap(i, store);
                 store += 1;
             }
         }
+        order.swap(store, to - 1);
         items.swap(store, to - 1);
-        centres.swap(store, to - 1);
         if store < middle {
             from = store + 1;
         } else {
@@ -340,10 +388,10 @@ mod tests {
 
     fn with_tree(points: &[Point], check: impl Fn(&Bvh, &[u32])) {
         let mut nodes = vec![Node::zeroed(); Bvh::max_nodes(points.len())];
-        let mut centres = vec![[0.0; 3]; points.len()];
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
-        let bounds = |item: u32| Aabb::of([&points[item as usize]]);
-        let bvh = Bvh::build(&mut order, bounds, &mut nodes, &mut centres);
+        let mut items = points.to_vec();
+        let bvh = Bvh::build(&mut order, &mut items, &mut nodes);
+        assert!(order.iter().zip(&items).all(|(&index, item)| points[index as usize] == *item));
         check(&bvh, &order);
     }
 
@@ -381,11 +429,11 @@ mod tests {
     fn halving_splits_at_the_median() {
         let points = random_points(101, 4);
         let mut order: Vec<u32> = (0..101).collect();
-        let mut centres: Vec<[f32; 3]> = points.iter().map(|p| (*p).into()).collect();
-        centres[17] = centres[80];
-        let middle = halve(&mut order, &mut centres, 1);
+        let mut items = points.clone();
+        items[17] = items[80];
+        let middle = halve(&mut order, &mut items, 1);
         assert_eq!(middle, 50);
-        let key = |i: usize| (centres[i][1], order[i]);
+        let key = |i: usize| (items[i].y, order[i]);
         assert!((0..50).all(|i| (50..101).all(|j| key(i) < key(j))));
     }
 }

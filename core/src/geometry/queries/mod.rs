@@ -2,11 +2,12 @@
 
 mod bvh;
 pub mod hull;
+mod nearest;
 mod point_tree;
 mod ray;
 mod surface;
 
 pub(crate) use bvh::{Bvh, Node};
-pub(crate) use point_tree::PointTreeSlots;
+pub(crate) use point_tree::{Nearest, PointTreeSlots};
 pub use point_tree::{Neighbour, PointTree};
 pub use surface::Surface;

@@ -1,6 +1,7 @@
 //! Nearest neighbours of points.
 
 use super::bvh::{Bvh, Node};
+use super::nearest;
 use crate::geometry::{Aabb, Point};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 
@@ -43,18 +44,14 @@ impl<'m> PointTreeSlots<'m> {
     }
 
     /// Arranges `points`, at least one, instead of those before.
-    pub(crate) fn fill(&mut self, points: &[Point], mut scratch: Arena) -> Result<(), OutOfMemory> {
-        let order = &mut self.order[..points.len()];
-        let centres = scratch.slice::<[f32; 3]>(points.len())?;
+    pub(crate) fn fill(&mut self, points: &[Point]) {
+        let (order, sorted) = (&mut self.order[..points.len()], &mut self.points[..points.len()]);
         for (slot, index) in order.iter_mut().zip(0..) {
             *slot = index;
         }
-        let bvh = Bvh::build(order, |index| Aabb::of([&points[index as usize]]), self.nodes, centres);
+        sorted.copy_from_slice(points);
+        let bvh = Bvh::build(order, sorted, self.nodes);
         self.used = [points.len(), bvh.nodes().len()];
-        for (slot, &index) in self.points.iter_mut().zip(order.iter()) {
-            *slot = points[index as usize];
-        }
-        Ok(())
     }
 
     /// Names the points by other indices: `names` has one for each point that the tree was filled with.
@@ -75,6 +72,42 @@ impl<'m> PointTreeSlots<'m> {
     }
 }
 
+/// The nearest of the points that it was shown, nearest first.
+pub(crate) struct Nearest<'f> {
+    found: &'f mut [Neighbour],
+    count: usize,
+}
+
+impl<'f> Nearest<'f> {
+    /// Room for as many points as `found` has.
+    pub(crate) fn new(found: &'f mut [Neighbour]) -> Self {
+        Self { found, count: 0 }
+    }
+
+    pub(crate) fn is_full(&self) -> bool {
+        self.count == self.found.len()
+    }
+
+    /// Keeps a point if it is among the nearest.
+    pub(crate) fn offer(&mut self, candidate: Neighbour) {
+        if self.is_full() && self.found.last().is_none_or(|last| !candidate.is_before(last)) {
+            return;
+        }
+        self.count = (self.count + 1).min(self.found.len());
+        let mut place = self.count - 1;
+        while place > 0 && candidate.is_before(&self.found[place - 1]) {
+            self.found[place] = self.found[place - 1];
+            place -= 1;
+        }
+        self.found[place] = candidate;
+    }
+
+    /// What was found.
+    pub(crate) fn into_slice(self) -> &'f [Neighbour] {
+        &self.found[..self.count]
+    }
+}
+
 impl Neighbour {
     fn is_before(&self, other: &Self) -> bool {
         self.distance_squared.total_cmp(&other.distance_squared).then(self.index.cmp(&other.index)).is_lt()
@@ -91,15 +124,10 @@ impl<'m> PointTree<'m> {
         ))
     }
 
-    /// Bytes of working memory for building it.
-    pub(crate) const fn scratch_bytes(points: usize) -> usize {
-        array_bytes::<[f32; 3]>(points)
-    }
-
     /// Arranges `points`, at least one.
     pub(crate) fn build(points: &[Point], arena: &mut Arena<'m>) -> Result<Self, OutOfMemory> {
         let mut slots = PointTreeSlots::new(points.len(), arena)?;
-        slots.fill(points, arena.scratch())?;
+        slots.fill(points);
         Ok(slots.into_tree())
     }
 
@@ -137,30 +165,34 @@ impl<'m> PointTree<'m> {
 
     /// The `found.len()` points closest to `query`, nearest first, fewer if there are not as many.
     pub fn k_nearest<'f>(&self, query: &Point, found: &'f mut [Neighbour]) -> &'f [Neighbour] {
-        let mut count = 0;
-        if !found.is_empty() {
+        let mut nearest = Nearest::new(found);
+        if !nearest.is_full() {
             self.bvh.visit_near(query, f32::INFINITY, |items, mut limit| {
                 for index in items {
                     let distance_squared = (self.points[index] - query).norm_squared();
-                    let candidate = Neighbour { index: index as u32, distance_squared };
-                    if count == found.len() && !candidate.is_before(&found[count - 1]) {
-                        continue;
-                    }
-                    count = (count + 1).min(found.len());
-                    let mut place = count - 1;
-                    while place > 0 && candidate.is_before(&found[place - 1]) {
-                        found[place] = found[place - 1];
-                        place -= 1;
-                    }
-                    found[place] = candidate;
-                    if count == found.len() {
-                        limit = found[count - 1].distance_squared;
+                    nearest.offer(Neighbour { index: index as u32, distance_squared });
+                    if let (true, Some(last)) = (nearest.is_full(), nearest.found.last()) {
+                        limit = last.distance_squared;
                     }
                 }
                 limit
             });
         }
-        &found[..count]
+        nearest.into_slice()
+    }
+
+    /// Calls `visit` for each point, in tree order, with the `K` points closest to it as [`k_nearest`](Self::k_nearest) finds
+    /// them: faster for all points than one by one.
+    pub(crate) fn for_each_k_nearest<const K: usize>(&self, mut visit: impl FnMut(usize, &[Neighbour])) {
+        let mut found = [Neighbour::default(); K];
+        nearest::for_each_group(self, |group: &nearest::Group<K>| {
+            for (index, keys) in group.nearest() {
+                for (found, &key) in found.iter_mut().zip(keys) {
+                    *found = nearest::neighbour(key);
+                }
+                visit(index, &found[..K.min(self.points.len())]);
+            }
+        });
     }
 
     /// Calls `visit` for each point within `radius` of `query`, in no particular but a repeatable order.
@@ -183,6 +215,43 @@ mod tests {
     use crate::memory::model_bytes;
     use crate::random::Random;
 
+    fn with_tree(points: &[Point], check: impl Fn(&PointTree)) {
+        let needed = model_bytes(PointTree::bytes(points.len()));
+        let mut memory = vec![0xAA; needed];
+        let mut arena = Arena::new(&mut memory, needed).unwrap();
+        check(&PointTree::build(points, &mut arena).unwrap());
+    }
+
+    #[test]
+    fn nearest_of_all_points_are_those_of_each() {
+        let mut random = Random::new(6);
+        let mut next = |scale: f32| (random.next_f32() - 0.5) * scale;
+        let mut uniform = |scale: f32| Point::new(next(scale), next(scale), next(scale));
+        // A cube, a clump, a point far away, and duplicates.
+        let mut points: Vec<Point> = (0..600).map(|_| uniform(1.0)).collect();
+        points.extend((0..300).map(|_| uniform(0.001)));
+        points.push(Point::new(500.0, 0.0, 0.0));
+        points.extend_from_within(..100);
+        points.extend([points[7]; 30]);
+        fn check<const K: usize>(points: &[Point]) {
+            with_tree(points, |tree| {
+                let mut next = 0;
+                tree.for_each_k_nearest::<K>(|index, nearest| {
+                    assert_eq!(index, next);
+                    next += 1;
+                    let mut found = [Neighbour::default(); K];
+                    assert_eq!(nearest, tree.k_nearest(&tree.points()[index], &mut found));
+                });
+                assert_eq!(next, points.len());
+            });
+        }
+        for count in [1, 2, 5, 9, 40, points.len()] {
+            check::<1>(&points[..count]);
+            check::<5>(&points[..count]);
+            check::<16>(&points[..count]);
+        }
+    }
+
     /// Uniform, clumped and duplicated points against brute force.
     #[test]
     fn queries_agree_with_brute_force() {
@@ -194,7 +263,7 @@ mod tests {
         let queries: Vec<Point> =
             (0..100).map(|_| uniform(1.2)).chain(points[..50].iter().copied()).collect();
 
-        let needed = model_bytes(PointTree::bytes(points.len()) + PointTree::scratch_bytes(points.len()));
+        let needed = model_bytes(PointTree::bytes(points.len()));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let tree = PointTree::build(&points, &mut arena).unwrap();

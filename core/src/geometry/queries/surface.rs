@@ -49,25 +49,23 @@ impl<'m> Surface<'m> {
 
     /// Bytes of working memory for building it.
     pub(crate) const fn scratch_bytes(triangles: usize) -> usize {
-        array_bytes::<u32>(triangles).saturating_add(array_bytes::<[f32; 3]>(triangles))
+        array_bytes::<u32>(triangles)
     }
 
     /// Arranges `mesh`; `inside_out` flips what is inside.
     pub(crate) fn build(mesh: &Mesh, inside_out: bool, arena: &mut Arena<'m>) -> Result<Self, OutOfMemory> {
         let count = mesh.solid_triangles().count();
-        let triangles = arena.slice::<[[f32; 3]; 3]>(count)?;
-        let nodes = arena.slice::<Node>(Bvh::max_nodes(count))?;
-        let dipoles = arena.slice::<Dipole>(Bvh::max_nodes(count))?;
+        let (triangles, _) = arena.unset::<Point>(3 * count)?.as_chunks_mut();
+        let nodes = arena.unset::<Node>(Bvh::max_nodes(count))?;
+        let dipoles = arena.unset::<Dipole>(Bvh::max_nodes(count))?;
         let mut scratch = arena.scratch();
-        let (order, centres) = (scratch.slice::<u32>(count)?, scratch.slice::<[f32; 3]>(count)?);
-        for (slot, triangle) in order.iter_mut().zip(mesh.solid_triangles()) {
-            *slot = triangle;
+        let order = scratch.unset::<u32>(count)?;
+        let solid = mesh.solid_triangles();
+        for ((name, corners), triangle) in order.iter_mut().zip(triangles.iter_mut()).zip(solid) {
+            (*name, *corners) = (triangle, mesh.corners(triangle as usize));
         }
-        let bvh = Bvh::build(order, |t| Aabb::of(&mesh.corners(t as usize)), nodes, centres);
-        for (slot, &triangle) in triangles.iter_mut().zip(order.iter()) {
-            *slot = mesh.corners(triangle as usize).map(Into::into);
-        }
-        let triangles: &'m [[Point; 3]] = bytemuck::cast_slice(triangles);
+        let bvh = Bvh::build(order, triangles, nodes);
+        let triangles: &'m [[Point; 3]] = triangles;
         fill_dipoles(&bvh, triangles, dipoles);
         Ok(Self { triangles, bvh, dipoles, orientation: if inside_out { -1.0 } else { 1.0 } })
     }

@@ -45,8 +45,8 @@ impl MassProperties {
     }
 
     pub(crate) fn of(mesh: &Mesh, mut scratch: Arena) -> Result<Self, OutOfMemory> {
-        let mut holes = Holes::find(mesh, &mut scratch)?;
         let aabb = mesh.aabb();
+        let mut holes = Holes::find(mesh, aabb.centre(), &mut scratch)?;
         // Sums of thousands of terms, around the middle of the box, in double precision.
         let middle = aabb.centre().cast::<f64>();
         // Integrals over the surface, over the volume below it, and over the fans that close its holes.
@@ -140,10 +140,12 @@ struct Holes<'s> {
     connected: DisjointSets<'s>,
     /// By the name of the connected vertices.
     rims: &'s [Rim],
+    /// The point that the middles of edges are measured from.
+    centre: Point,
 }
 
 impl<'s> Holes<'s> {
-    fn find(mesh: &Mesh, scratch: &mut Arena<'s>) -> Result<Self, OutOfMemory> {
+    fn find(mesh: &Mesh, centre: Point, scratch: &mut Arena<'s>) -> Result<Self, OutOfMemory> {
         let vertices = mesh.vertices();
         let order = scratch.slice::<u32>(vertices.len())?;
         let welded = scratch.slice::<u32>(vertices.len())?;
@@ -178,11 +180,11 @@ impl<'s> Holes<'s> {
             let rim = &mut rims[connected.find(a) as usize];
             let [start, end] = [a, b].map(|vertex| mesh.vertices()[vertex as usize]);
             let length = (end - start).norm();
-            let middle = (start - mesh.aabb().centre() + (end - start) * 0.5) * length;
+            let middle = (start - centre + (end - start) * 0.5) * length;
             rim.length += length;
             rim.sum = [0, 1, 2].map(|i| rim.sum[i] + middle[i]);
         }
-        Ok(Self { runs: edges, connected, rims })
+        Ok(Self { runs: edges, connected, rims, centre })
     }
 
     fn is_none(&self) -> bool {
@@ -193,7 +195,7 @@ impl<'s> Holes<'s> {
     fn for_each_fan_triangle(&mut self, mesh: &Mesh, mut visit: impl FnMut([Point; 3])) {
         for [a, b] in unmatched(self.runs) {
             let rim = self.rims[self.connected.find(a) as usize];
-            let middle = mesh.aabb().centre() + Vector::from(rim.sum) / rim.length.max(f32::MIN_POSITIVE);
+            let middle = self.centre + Vector::from(rim.sum) / rim.length.max(f32::MIN_POSITIVE);
             let [start, end] = [a, b].map(|vertex| mesh.vertices()[vertex as usize]);
             visit([end, start, middle]);
         }

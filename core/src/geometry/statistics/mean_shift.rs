@@ -117,8 +117,7 @@ mod tests {
     /// The labels in the order of `points`.
     fn clusters_of(points: &[Point], bandwidth: f32) -> (usize, Vec<u32>) {
         let n = points.len();
-        let tree_bytes = PointTree::bytes(n) + PointTree::scratch_bytes(n);
-        let needed = model_bytes(tree_bytes + scratch_bytes(n));
+        let needed = model_bytes(PointTree::bytes(n) + scratch_bytes(n));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let tree = PointTree::build(points, &mut arena).unwrap();
@@ -149,7 +148,7 @@ mod tests {
     fn modes_are_means_of_what_is_around_them() {
         let mut random = Random::new(9);
         let points: Vec<Point> = (0..400).map(|_| Point::from([(); 3].map(|()| random.next_f32()))).collect();
-        let needed = model_bytes(PointTree::bytes(400) + PointTree::scratch_bytes(400));
+        let needed = model_bytes(PointTree::bytes(400));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let tree = PointTree::build(&points, &mut arena).unwrap();

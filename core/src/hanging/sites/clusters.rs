@@ -14,7 +14,6 @@ impl<'s> Clusters<'s> {
     /// Bytes of working memory for clustering up to `points` contact points.
     pub(super) const fn scratch_bytes(points: usize) -> usize {
         PointTree::bytes(points)
-            .saturating_add(PointTree::scratch_bytes(points))
             .saturating_add(mean_shift::scratch_bytes(points))
             .saturating_add(array_bytes::<u32>(points).saturating_mul(2))
     }

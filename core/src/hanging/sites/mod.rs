@@ -69,8 +69,8 @@ pub(super) const fn object_bytes() -> usize {
 
 /// Bytes of working memory for drawing `samples` points of an object and finding its sites.
 pub(super) const fn object_scratch_bytes(samples: usize) -> usize {
-    let search = larger(PointTree::scratch_bytes(samples), hangability::scratch_bytes(samples));
-    larger(sampling::scratch_bytes(samples), PointTree::bytes(samples).saturating_add(search))
+    let search = PointTree::bytes(samples).saturating_add(hangability::scratch_bytes(samples));
+    larger(sampling::scratch_bytes(samples), search)
 }
 
 /// Memory for the sites of an object.

@@ -42,7 +42,7 @@ pub(super) const MAX_SITES: usize = 256;
 
 /// Bytes of working memory.
 pub(super) const fn scratch_bytes(points: usize) -> usize {
-    array_bytes::<Point>(points).saturating_mul(2).saturating_add(Clusters::scratch_bytes(points))
+    array_bytes::<Point>(points).saturating_add(Clusters::scratch_bytes(points))
 }
 
 /// The input of the search.
@@ -75,10 +75,11 @@ impl Supportability<'_> {
         if counts.contact_points == 0 {
             return Ok((counts, None));
         }
-        let slice = scratch.slice::<Point>(self.points.len())?;
         let bandwidth = self.params.cluster_bandwidth * self.tree.aabb().diagonal();
         let clusters = Clusters::find(&contacts[..counts.contact_points], bandwidth, scratch)?;
         counts.clusters = clusters.count;
+        // The clusters have copies of the contact points.
+        let slice = contacts;
 
         let mut sites = Best::new(slots);
         let mut stop = None;
@@ -145,14 +146,25 @@ impl Supportability<'_> {
     ) -> Option<(Point, f32)> {
         let offset = |point: &Point| (point - contact_point).dot(&direction).abs();
         let mut count = 0;
-        for point in self.points.iter().filter(|p| offset(p) < self.params.slice_half_thickness) {
-            slice[count] = *point;
-            if *point == contact_point {
-                slice.swap(0, count);
+        let mut look_at = |point: &Point| {
+            if offset(point) < self.params.slice_half_thickness {
+                slice[count] = *point;
+                if *point == contact_point {
+                    slice.swap(0, count);
+                }
+                count += 1;
             }
-            count += 1;
+        };
+        let link = self.params.slice_link_distance;
+        if reach.is_finite() {
+            // What hangs together and reaches farther has a point that is not a link farther.
+            self.tree.for_each_within(&contact_point, reach + link, |neighbour| {
+                look_at(&self.tree.points()[neighbour.index as usize]);
+            });
+        } else {
+            self.points.iter().for_each(look_at);
         }
-        let members = linked_cluster(&mut slice[..count], self.params.slice_link_distance, reach)?;
+        let members = linked_cluster(&mut slice[..count], link, reach)?;
         if members < 2 {
             return None;
         }

@@ -110,10 +110,8 @@ impl<'a> Obstacles<'a> {
 
     /// Bytes of working memory for [`build`](Self::build).
     pub(super) const fn scratch_bytes(points: usize, scene: usize) -> usize {
-        let of_scene = PointTree::scratch_bytes(scene)
-            .saturating_add(array_bytes::<Point>(scene))
-            .saturating_add(array_bytes::<u32>(scene));
-        larger(array_bytes::<[f32; 3]>(max_groups(points)), of_scene)
+        let of_scene = array_bytes::<Point>(scene).saturating_add(array_bytes::<u32>(scene));
+        larger(array_bytes::<Point>(max_groups(points).saturating_mul(2)), of_scene)
     }
 
     /// Arranges the obstacles of a task for queries. Of the scene, only points in `region` matter.
@@ -129,8 +127,12 @@ impl<'a> Obstacles<'a> {
             [] => None,
             groups => {
                 let mut scratch = arena.scratch();
-                let centres = scratch.unset::<[f32; 3]>(groups.len())?;
-                Some(Bvh::build(order, |index| groups[index as usize].aabb(), nodes, centres))
+                let (boxes, _) = scratch.unset::<Point>(2 * groups.len())?.as_chunks_mut::<2>();
+                for (corners, group) in boxes.iter_mut().zip(groups) {
+                    let Aabb { min, max } = group.aabb();
+                    *corners = [min, max];
+                }
+                Some(Bvh::build(order, boxes, nodes))
             }
         };
         let mut tree = PointTreeSlots::new(scene.len(), arena)?;
@@ -147,7 +149,7 @@ impl<'a> Obstacles<'a> {
         let scene = match count {
             0 => None,
             _ => {
-                tree.fill(&points[..count], scratch)?;
+                tree.fill(&points[..count]);
                 tree.rename(names);
                 Some(tree.into_tree())
             }

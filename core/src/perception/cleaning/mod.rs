@@ -12,21 +12,25 @@ use crate::geometry::{Point, PointTreeSlots, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
 use merge::Kept;
 
-/// Bytes of working memory for a cloud of `points`, some of which [`Cleaned`] keeps.
-pub(crate) const fn scratch_bytes(points: usize) -> usize {
-    let kept = merge::bytes(points)
+/// Bytes of what is kept of a cloud of `points`.
+pub(crate) const fn bytes(points: usize) -> usize {
+    array_bytes::<Vector>(points)
         .saturating_add(array_bytes::<f32>(points))
-        .saturating_add(array_bytes::<Vector>(points))
-        .saturating_add(array_bytes::<u8>(points).saturating_mul(2));
-    kept.saturating_add(larger(merge::scratch_bytes(points), strays::scratch_bytes(points)))
+        .saturating_add(array_bytes::<u8>(points).saturating_mul(2))
+}
+
+/// Bytes of working memory for a cloud of `points`.
+pub(crate) const fn scratch_bytes(points: usize) -> usize {
+    merge::bytes(points).saturating_add(larger(merge::scratch_bytes(points), strays::scratch_bytes(points)))
 }
 
 /// The points of a cloud that are left, without duplicates and strays, in the order of its tree.
 pub(crate) struct Cleaned<'s> {
     /// Unit normals, zero where none was given.
     pub(crate) normals: &'s mut [Vector],
-    /// Distance between points around each point, metres.
-    pub(crate) spacings: &'s [f32],
+    /// Distance between points around each point, metres; zero in a cloud that is taken as it is, until
+    /// [`spacing::measure`] measures it.
+    pub(crate) spacings: &'s mut [f32],
     /// 1 for points on which nothing hangs: at first those on large planes, as walls and tables.
     pub(crate) is_excluded: &'s mut [u8],
     /// 1 for points that were not seen but guessed: at first none.
@@ -55,39 +59,35 @@ pub(crate) fn clean<'s>(
     slots: &mut PointTreeSlots,
     arena: &mut Arena<'s>,
 ) -> Result<Cleaned<'s>, OutOfMemory> {
-    let kept = match is_taken_as_it_is {
-        true => Kept::all(points, normals, arena)?,
-        false => merge::merge(points, normals, arena)?,
+    let (normals_kept, spacings) = (arena.unset::<Vector>(points.len())?, arena.slice::<f32>(points.len())?);
+    let (is_excluded, is_guessed) = (arena.unset::<u8>(points.len())?, arena.slice::<u8>(points.len())?);
+    let mut scratch = arena.scratch();
+    let mut kept = match is_taken_as_it_is {
+        true => Kept::all(points, normals, &mut scratch)?,
+        false => merge::merge(points, normals, &mut scratch)?,
     };
     let mut counts = CleaningCounts { merged: points.len() - kept.points.len(), ..CleaningCounts::default() };
-    slots.fill(kept.points, arena.scratch())?;
-    let spacings = arena.slice::<f32>(kept.points.len())?;
-    spacing::measure(&slots.tree(), spacings);
-    let kept = if is_taken_as_it_is {
-        kept
-    } else {
-        let mut scratch = arena.scratch();
+    slots.fill(kept.points);
+    if !is_taken_as_it_is {
+        let spacings = &mut spacings[..kept.points.len()];
         let is_stray = strays::find(&slots.tree(), spacings, kept.is_on_plane, &mut scratch)?;
         counts.strays = is_stray.iter().filter(|flag| **flag > 0).count();
         if counts.strays > 0 {
-            let kept = kept.without(is_stray);
-            slots.fill(kept.points, scratch)?;
+            kept = kept.without(is_stray);
+            slots.fill(kept.points);
             spacing::measure(&slots.tree(), &mut spacings[..kept.points.len()]);
-            kept
-        } else {
-            kept
         }
-    };
+    }
     let count = kept.points.len();
-    let normals = arena.slice::<Vector>(count)?;
-    let (is_excluded, is_guessed) = (arena.slice::<u8>(count)?, arena.slice::<u8>(count)?);
+    let (normals, spacings) = (&mut normals_kept[..count], &mut spacings[..count]);
+    let (is_excluded, is_guessed) = (&mut is_excluded[..count], &is_guessed[..count]);
     for (place, &index) in slots.tree().order().iter().enumerate() {
         normals[place] = kept.normals[index as usize];
         is_excluded[place] = kept.is_on_plane[index as usize];
     }
     counts.on_planes = is_excluded.iter().filter(|flag| **flag > 0).count();
     slots.rename(kept.names);
-    Ok(Cleaned { normals, spacings: &spacings[..count], is_excluded, is_guessed, counts })
+    Ok(Cleaned { normals, spacings, is_excluded, is_guessed, counts })
 }
 
 #[cfg(test)]

@@ -117,16 +117,52 @@ fn is_in_or_beside_square(cells: &[u8], cell: usize) -> bool {
 
 /// Marks the cells with points in squares that are filled. Returns whether there is one.
 fn mark_squares(cells: &mut [u8]) -> bool {
+    let is_occupied = |cell: u8| usize::from(cell & OCCUPIED);
     let (mut is_any_filled, least) = (false, MIN_FILL * (SQUARE * SQUARE) as f32);
-    for y in 0..=CELLS - SQUARE {
-        for x in 0..=CELLS - SQUARE {
-            let square = || (0..SQUARE * SQUARE).map(|k| (y + k / SQUARE) * CELLS + x + k % SQUARE);
-            let occupied = square().filter(|&cell| cells[cell] & OCCUPIED > 0).count() as f32;
-            if occupied >= least {
-                square().for_each(|cell| cells[cell] |= LARGE);
+    // Cells with points in each column of the squares in these rows.
+    let mut columns = [0; CELLS];
+    for y in 0..CELLS {
+        for (x, column) in columns.iter_mut().enumerate() {
+            *column += is_occupied(cells[y * CELLS + x]);
+            *column -= if y < SQUARE { 0 } else { is_occupied(cells[(y - SQUARE) * CELLS + x]) };
+        }
+        for (x, square) in columns.windows(SQUARE).enumerate() {
+            if y + 1 >= SQUARE && square.iter().sum::<usize>() as f32 >= least {
+                for row in cells.chunks_mut(CELLS).take(y + 1).skip(y + 1 - SQUARE) {
+                    row[x..x + SQUARE].iter_mut().for_each(|cell| *cell |= LARGE);
+                }
                 is_any_filled = true;
             }
         }
     }
     is_any_filled
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn squares_are_marked_as_one_by_one() {
+        let mut random = Random::new(4);
+        for density in [0.2, 0.8, 0.93, 1.0] {
+            // A field of half the grid's size that reaches its border.
+            let mut cells = std::vec![0; CELLS * CELLS];
+            for (place, cell) in cells.iter_mut().enumerate().take(CELLS * CELLS / 2) {
+                *cell = u8::from(random.next_f32() < density && place % CELLS > CELLS / 3);
+            }
+            let mut expected = cells.clone();
+            for (x, y) in (0..=CELLS - SQUARE).flat_map(|y| (0..=CELLS - SQUARE).map(move |x| (x, y))) {
+                let square = || (0..SQUARE * SQUARE).map(|k| (y + k / SQUARE) * CELLS + x + k % SQUARE);
+                let occupied = square().filter(|&cell| cells[cell] & OCCUPIED > 0).count();
+                if occupied as f32 >= MIN_FILL * (SQUARE * SQUARE) as f32 {
+                    square().for_each(|cell| expected[cell] |= LARGE);
+                }
+            }
+            let is_any = expected.iter().any(|cell| cell & LARGE > 0);
+            assert_eq!((mark_squares(&mut cells), &cells), (is_any, &expected), "{density}");
+            assert!(is_any || density < 1.0);
+            assert!(!is_any || density > 0.5);
+        }
+    }
 }

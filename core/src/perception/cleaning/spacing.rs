@@ -6,11 +6,14 @@ use crate::geometry::{Neighbour, PointTree};
 /// last one that is a step away.
 const NEIGHBOURS: usize = 5;
 
+/// The distance from a point to its fourth neighbour, metres; zero for a point that is alone. `nearest` are its neighbours,
+/// itself included, nearest first.
+pub(super) fn of(nearest: &[Neighbour]) -> f32 {
+    let last = nearest[..nearest.len().min(NEIGHBOURS)].last();
+    last.map_or(0.0, |neighbour| libm::sqrtf(neighbour.distance_squared))
+}
+
 /// Writes the distance from each point to its fourth neighbour, metres; zero for a point that is alone.
 pub(crate) fn measure(tree: &PointTree, spacings: &mut [f32]) {
-    for (spacing, point) in spacings.iter_mut().zip(tree.points()) {
-        let mut found = [Neighbour::default(); NEIGHBOURS];
-        let found = tree.k_nearest(point, &mut found);
-        *spacing = found.last().map_or(0.0, |neighbour| libm::sqrtf(neighbour.distance_squared));
-    }
+    tree.for_each_k_nearest::<NEIGHBOURS>(|index, nearest| spacings[index] = of(nearest));
 }

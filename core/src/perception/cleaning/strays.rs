@@ -1,7 +1,8 @@
 //! Points in the air: single ones, as flying pixels and reflections make them, and specks of a few.
 
+use super::spacing;
 use crate::disjoint_sets::DisjointSets;
-use crate::geometry::{Neighbour, PointTree, Vector, least_eigenvector};
+use crate::geometry::{PointTree, Vector, least_eigenvector};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use nalgebra::Matrix3;
 
@@ -31,14 +32,16 @@ const MAX_PEERS: usize = 24;
 
 /// Bytes of working memory for a cloud of `points`.
 pub(super) const fn scratch_bytes(points: usize) -> usize {
-    array_bytes::<u8>(points).saturating_add(array_bytes::<u32>(points).saturating_mul(2))
+    array_bytes::<u8>(points)
+        .saturating_add(array_bytes::<u32>(points).saturating_mul(2))
+        .saturating_add(array_bytes::<[u32; NEIGHBOURS]>(points))
 }
 
 /// Flags the strays, in the order of the points that the tree was built from, as `is_on_plane` is: points on large planes are
-/// none. `spacings` are in tree order. At least one point is not flagged.
+/// none. Measures the spacings on the way, in tree order. At least one point is not flagged.
 pub(super) fn find<'s>(
     tree: &PointTree,
-    spacings: &[f32],
+    spacings: &mut [f32],
     is_on_plane: &[u8],
     arena: &mut Arena<'s>,
 ) -> Result<&'s [u8], OutOfMemory> {
@@ -46,21 +49,27 @@ pub(super) fn find<'s>(
     let is_stray = arena.slice::<u8>(count)?;
     let parents = arena.slice::<u32>(count)?;
     let sizes = arena.slice::<u32>(count)?;
+    let (nearest, _) = arena.unset::<u32>(count * NEIGHBOURS)?.as_chunks_mut::<NEIGHBOURS>();
+    tree.for_each_k_nearest::<NEIGHBOURS>(|index, neighbours| {
+        spacings[index] = spacing::of(neighbours);
+        for (slot, neighbour) in nearest[index].iter_mut().zip(neighbours) {
+            *slot = neighbour.index;
+        }
+    });
     let overall = median(spacings, sizes);
     let mut pieces = DisjointSets::new(parents);
-    for (index, point) in tree.points().iter().enumerate() {
+    for (index, neighbours) in nearest.iter().enumerate() {
         if is_on_plane[tree.order()[index] as usize] > 0 {
             continue;
         }
-        let mut found = [Neighbour::default(); NEIGHBOURS];
-        let neighbours = tree.k_nearest(point, &mut found);
+        let neighbours = &neighbours[..count.min(NEIGHBOURS)];
         let is_apart = is_apart(tree, spacings, index, overall, neighbours);
         is_stray[tree.order()[index] as usize] = u8::from(is_apart);
-        for neighbour in neighbours {
-            let other = neighbour.index as usize;
-            let reach = LINK * spacings[index].min(spacings[other]).max(overall);
-            if neighbour.distance_squared <= reach * reach {
-                pieces.join(index as u32, other as u32);
+        for &other in neighbours {
+            let reach = LINK * spacings[index].min(spacings[other as usize]).max(overall);
+            let way = tree.points()[other as usize] - tree.points()[index];
+            if way.norm_squared() <= reach * reach {
+                pieces.join(index as u32, other);
             }
         }
     }
@@ -83,20 +92,14 @@ fn median(values: &[f32], bits: &mut [u32]) -> f32 {
 }
 
 /// Whether a point stands alone among its `neighbours`.
-fn is_apart(
-    tree: &PointTree,
-    spacings: &[f32],
-    index: usize,
-    overall: f32,
-    neighbours: &[Neighbour],
-) -> bool {
+fn is_apart(tree: &PointTree, spacings: &[f32], index: usize, overall: f32, neighbours: &[u32]) -> bool {
     let spacing = spacings[index];
     if spacing > APART * overall {
         return !has_peers(tree, spacings, index);
     }
     let mut sorted = heapless::Vec::<f32, NEIGHBOURS>::new();
-    for neighbour in neighbours.iter().filter(|n| n.index as usize != index) {
-        let _ = sorted.push(spacings[neighbour.index as usize]);
+    for &other in neighbours.iter().filter(|&&other| other as usize != index) {
+        let _ = sorted.push(spacings[other as usize]);
     }
     sorted.sort_unstable_by(f32::total_cmp);
     let local = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);

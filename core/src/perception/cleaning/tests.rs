@@ -8,11 +8,7 @@ use std::vec::Vec;
 /// Cleans a cloud and returns the indices of the points that are left, those of them on planes, and the counts.
 fn cleaned(points: &[Point], normals: &[Vector]) -> (Vec<u32>, Vec<u32>, CleaningCounts) {
     let n = points.len();
-    let needed = model_bytes(
-        crate::geometry::PointTree::bytes(n)
-            + scratch_bytes(n)
-            + crate::geometry::PointTree::scratch_bytes(n),
-    );
+    let needed = model_bytes(crate::geometry::PointTree::bytes(n) + bytes(n) + scratch_bytes(n));
     let mut memory = vec![0; needed];
     let mut arena = Arena::new(&mut memory, needed).unwrap();
     let mut slots = PointTreeSlots::new(n, &mut arena).unwrap();

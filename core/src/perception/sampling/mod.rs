@@ -1,20 +1,20 @@
 //! Poisson-disk samples of a mesh, to an exact count: weighted sample elimination (Yuksel 2015, "Sample
 //! Elimination for Generating Poisson Disk Sample Sets"). Names are Yuksel's.
 
+mod cells;
+mod elimination;
+mod falling;
+
 use crate::geometry::{Mesh, Point, Vector};
-use crate::heap::Heap;
 use crate::memory::{Arena, OutOfMemory, array_bytes, model_bytes};
 pub use crate::params::MAX_SAMPLES;
 use crate::random::Random;
+use cells::Cells;
+use elimination::eliminate;
 
 /// Candidates drawn for each sample that is kept: `M / N`. Yuksel's 5 spreads the samples to 0.70 of the best
 /// possible distance; 3 to 0.66, in 0.4 of the time.
 const OVERSAMPLING: usize = 3;
-/// Yuksel's `beta`, which with `gamma` limits the weight of candidates that are very close (eq. 5).
-const BETA: f32 = 0.65;
-/// Yuksel's `gamma` (eq. 5).
-const GAMMA: f32 = 1.5;
-
 /// Bytes of memory for [`sample`].
 pub const fn sample_bytes(count: usize) -> usize {
     model_bytes(scratch_bytes(count))
@@ -24,9 +24,8 @@ pub const fn sample_bytes(count: usize) -> usize {
 pub(crate) const fn scratch_bytes(count: usize) -> usize {
     let candidates = count.saturating_mul(OVERSAMPLING);
     array_bytes::<Candidate>(candidates)
-        .saturating_mul(2)
         .saturating_add(Cells::bytes(candidates))
-        .saturating_add(array_bytes::<u32>(candidates).saturating_mul(3))
+        .saturating_add(elimination::scratch_bytes(candidates))
 }
 
 /// Why no samples can be drawn.
@@ -106,15 +105,14 @@ pub(crate) fn sample_into(
     mut scratch: Arena,
 ) -> Result<(), OutOfMemory> {
     let count = points.len();
-    let drawn = scratch.slice::<Candidate>(count * OVERSAMPLING)?;
+    let drawn = scratch.unset::<Candidate>(count * OVERSAMPLING)?;
     let area = draw(mesh, seed, drawn.len(), |place, candidate| drawn[place] = candidate);
     // The largest radius that `count` disks on a plane of this area can have (section 3.1).
     let r_max = libm::sqrtf(area / (2.0 * libm::sqrtf(3.0) * count.max(1) as f32));
-    let candidates = scratch.slice::<Candidate>(drawn.len())?;
-    let cells = Cells::sort(drawn, candidates, 2.0 * r_max, &mut scratch)?;
-    let kept = eliminate(candidates, &cells, count, r_max, &mut scratch)?;
+    let cells = Cells::sort(drawn, 2.0 * r_max, &mut scratch)?;
+    let kept = eliminate(&cells, count, r_max, scratch)?;
     for ((point, normal), &index) in points.iter_mut().zip(normals).zip(kept) {
-        (*point, *normal) = candidates[index as usize].on(mesh);
+        (*point, *normal) = drawn[index as usize].on(mesh);
     }
     Ok(())
 }
@@ -179,157 +177,6 @@ fn draw(mesh: &Mesh, seed: u64, count: usize, mut tell: impl FnMut(usize, Candid
         }
     }
     total as f32
-}
-
-/// A sparse grid of cubes as wide as the largest distance that matters.
-///
-/// Cubes are numbered by z, then y, then x, and candidates sorted by the number of their cube, so that the three
-/// cubes side by side along x hold neighbours in the order. Nine such rows surround a candidate.
-struct Cells<'s> {
-    /// The cube of each candidate, as an index into the cubes that hold any.
-    cell_of: &'s [u32],
-    /// For each such cube, where its candidates begin; one entry more than cubes.
-    starts: &'s [u32],
-    /// For each such cube, the first cube of each of the nine rows around it.
-    rows: &'s [[u32; 9]],
-    /// The numbers of the cubes.
-    numbers: &'s [u64],
-    width: f32,
-}
-
-/// Bits of a cube's number for each axis, and of a candidate's index, which share a sort key. Cubes beyond the
-/// last share its number, which costs only time.
-const AXIS_BITS: u32 = 14;
-const INDEX_BITS: u32 = 22;
-const _: () = assert!(3 * AXIS_BITS + INDEX_BITS == u64::BITS);
-const _: () = assert!(MAX_SAMPLES * OVERSAMPLING < 1 << INDEX_BITS);
-
-const LAST_CELL: u64 = (1 << AXIS_BITS) - 1;
-
-fn number([x, y, z]: [u64; 3]) -> u64 {
-    (z << AXIS_BITS | y) << AXIS_BITS | x
-}
-
-impl<'s> Cells<'s> {
-    const fn bytes(candidates: usize) -> usize {
-        array_bytes::<u64>(candidates)
-            .saturating_add(array_bytes::<u32>(candidates))
-            .saturating_add(array_bytes::<u32>(candidates.saturating_add(1)))
-            .saturating_add(array_bytes::<[u32; 9]>(candidates))
-    }
-
-    /// Sorts `drawn` into `candidates`.
-    fn sort(
-        drawn: &[Candidate],
-        candidates: &mut [Candidate],
-        width: f32,
-        scratch: &mut Arena<'s>,
-    ) -> Result<Self, OutOfMemory> {
-        let numbers = scratch.slice::<u64>(drawn.len())?;
-        let cell_of = scratch.slice::<u32>(drawn.len())?;
-        let starts = scratch.slice::<u32>(drawn.len() + 1)?;
-        let rows = scratch.slice::<[u32; 9]>(drawn.len())?;
-
-        let low = drawn.iter().fold(Point::from([f32::INFINITY; 3]), |low, c| low.inf(&c.position.into()));
-        // Sort keys first: number and index.
-        for (index, (key, candidate)) in numbers.iter_mut().zip(drawn).enumerate() {
-            let offset = (Point::from(candidate.position) - low) / width;
-            let cell = offset.map(|x| (x as u64).min(LAST_CELL)).into();
-            *key = number(cell) << INDEX_BITS | index as u64;
-        }
-        numbers.sort_unstable();
-        let mut cells = 0;
-        for place in 0..drawn.len() {
-            let key = numbers[place];
-            candidates[place] = drawn[(key & ((1 << INDEX_BITS) - 1)) as usize];
-            // Numbers move to the front, over keys that were read.
-            if place == 0 || numbers[cells - 1] != key >> INDEX_BITS {
-                (numbers[cells], starts[cells]) = (key >> INDEX_BITS, place as u32);
-                cells += 1;
-            }
-            cell_of[place] = cells as u32 - 1;
-        }
-        starts[cells] = drawn.len() as u32;
-        let (numbers, rows) = (&numbers[..cells], &mut rows[..cells]);
-        for row in 0..9 {
-            // Both the cubes and the rows beside them ascend, so one pass finds all.
-            let mut first = 0;
-            for (cell, rows) in rows.iter_mut().enumerate() {
-                let target = row_number(numbers[cell], row);
-                while first < cells && numbers[first] < target {
-                    first += 1;
-                }
-                rows[row] = first as u32;
-            }
-        }
-        Ok(Self { cell_of, starts: &starts[..=cells], rows, numbers, width })
-    }
-
-    /// Calls `visit` for each other candidate closer to candidate `index` than the width, with the distance.
-    fn for_each_neighbour(&self, candidates: &[Candidate], index: usize, mut visit: impl FnMut(usize, f32)) {
-        let position = Point::from(candidates[index].position);
-        let cell = self.cell_of[index] as usize;
-        for (row, &first) in self.rows[cell].iter().enumerate() {
-            let end = row_number(self.numbers[cell], row) + 2;
-            let mut last = first as usize;
-            while last < self.numbers.len() && self.numbers[last] <= end {
-                last += 1;
-            }
-            let neighbours = self.starts[first as usize] as usize..self.starts[last] as usize;
-            for (other, candidate) in neighbours.clone().zip(&candidates[neighbours]) {
-                let distance_squared = (Point::from(candidate.position) - position).norm_squared();
-                if distance_squared < self.width * self.width && other != index {
-                    visit(other, libm::sqrtf(distance_squared));
-                }
-            }
-        }
-    }
-}
-
-/// One less than the number of the cube in row `row` straight beside cube `number`: where the row begins.
-fn row_number(number: u64, row: usize) -> u64 {
-    let (dy, dz) = (row as u64 % 3, row as u64 / 3);
-    // Around the border numbers run over into other rows or below zero; those hold nothing that is close, and
-    // distances are checked anyway.
-    (number + (dz << (2 * AXIS_BITS)) + (dy << AXIS_BITS))
-        .saturating_sub((1 << (2 * AXIS_BITS)) + (1 << AXIS_BITS) + 1)
-}
-
-/// Removes the candidate with the heaviest neighbours until `count` are left, and returns those.
-fn eliminate<'s>(
-    candidates: &[Candidate],
-    cells: &Cells,
-    count: usize,
-    r_max: f32,
-    scratch: &mut Arena<'s>,
-) -> Result<&'s [u32], OutOfMemory> {
-    let total = candidates.len();
-    let weights = scratch.slice::<f32>(total)?;
-    let order = scratch.slice::<u32>(total)?;
-    let places = scratch.slice::<u32>(total)?;
-    let fraction = count as f32 / total.max(1) as f32;
-    let r_min = r_max * BETA * (1.0 - libm::powf(fraction, GAMMA));
-    // Eq. 4 and 6, with the exponent alpha = 8.
-    let weight = |distance: f32| {
-        let base = 1.0 - distance.max(2.0 * r_min) / (2.0 * r_max);
-        let square = base * base;
-        let fourth = square * square;
-        fourth * fourth
-    };
-    for (index, sum) in weights.iter_mut().enumerate() {
-        cells.for_each_neighbour(candidates, index, |_, distance| *sum += weight(distance));
-    }
-    let mut heap = Heap::full(weights, order, places);
-    while heap.len() > count
-        && let Some(heaviest) = heap.pop()
-    {
-        cells.for_each_neighbour(candidates, heaviest, |other, distance| {
-            if heap.contains(other) {
-                heap.lighten(other, weight(distance));
-            }
-        });
-    }
-    Ok(heap.into_items())
 }
 
 #[cfg(test)]
