@@ -260,7 +260,7 @@ impl Default for Params {
             max_collision: 0.01,
             candidates: Candidates::Contacts,
             settle: true,
-            voxels: 400_000,
+            voxels: 200_000,
             settle_attempts: 192,
             firm_enough: 2,
             min_probability: 0.3,
