@@ -4,7 +4,7 @@
   primitives.py --data FOLDER --bench PROGRAM --criterion FOLDER --out FILE [--rounds 2]
 
 FOLDER is what `speed primitives` wrote: a mesh, queries and hangpose's answers. For each kind of query the program
-PROGRAM, which is host-tests/benches/primitives.rs, and Open3D take turns; the answers of Open3D are compared with
+PROGRAM, which is host-tests/src/bin/primitives.rs, and Open3D take turns; the answers of Open3D are compared with
 hangpose's. Needs open3d, mujoco, numpy and scipy; what is missing is left out.
 """
 import argparse
@@ -157,6 +157,9 @@ def mujoco_step(scene):
         lines = []
         for part in parts:
             if "hull" in part:
+                if np.linalg.matrix_rank(np.subtract(part["hull"], part["hull"][0]), tol=1e-6) < 3:
+                    # MuJoCo has no flat hulls. The ends of a round part are such.
+                    continue
                 name = f"hull{len(assets)}"
                 assets.append(f'<mesh name="{name}" vertex="{text(np.ravel(part["hull"]))}"/>')
                 # MuJoCo moves a mesh to its centre of mass and principal axes, and places it there again.

@@ -8,8 +8,10 @@ use hangpose::hanging::predict_bytes;
 use host_tests::performance::export::export;
 use host_tests::performance::growth::measure_growth;
 use host_tests::performance::primitives::Data;
+use host_tests::performance::refine::{refine, weld};
 use host_tests::performance::stages::{Figures, STAGES, measure};
 use host_tests::performance::step::Resting;
+use host_tests::solid::Solid;
 use host_tests::tables::case::{Case, Fit, made};
 use host_tests::tables::real::real;
 use serde::Serialize;
@@ -46,6 +48,9 @@ struct Pairs {
     /// Folder of real meshes with a manifest.json, to be measured instead.
     #[arg(long, value_name = "DIR")]
     meshes: Option<PathBuf>,
+    /// Least number of triangles of an object; longest edges are halved until then. The surface stays the same.
+    #[arg(long, default_value_t = 0)]
+    triangles: usize,
 }
 
 #[derive(Subcommand)]
@@ -143,6 +148,13 @@ fn cases(pairs: &Pairs) -> Result<Vec<Case>> {
         None => made(pairs.pairs, pairs.seed),
     };
     cases.retain(|case| case.fit != Fit::No);
+    for case in &mut cases {
+        let solid = Solid::clone(&case.object);
+        if solid.triangles.len() < pairs.triangles {
+            let (vertices, triangles) = refine(weld(&solid.vertices, &solid.triangles), pairs.triangles);
+            case.object = Solid { vertices, triangles, ..solid }.into();
+        }
+    }
     Ok(cases)
 }
 

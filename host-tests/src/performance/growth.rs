@@ -13,7 +13,7 @@ use serde::Serialize;
 use std::path::Path;
 
 /// Sizes that are measured, from one thousand to one million.
-pub const SIZES: [usize; 7] = [1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000];
+pub const SIZES: [usize; 8] = [1_000, 3_000, 10_000, 30_000, 100_000, 200_000, 300_000, 1_000_000];
 /// Points of the sample hook in the room, and points of a supporter beside meshes of growing size.
 const POINTS: usize = 10_000;
 

@@ -1,7 +1,8 @@
 //! `make bench`: single queries of this project and of other libraries on the same data, one thread.
 //!
-//! Answers are compared before anything is measured. Each measurement is of all queries of a kind; `bench/performance.py`
-//! divides by their number and adds Open3D, Embree and MuJoCo.
+//! Answers are compared before anything is measured. Each measurement is of all queries of a kind; `bench/primitives.py`
+//! divides by their number and adds Open3D, Embree and MuJoCo. A binary, since a benchmark of cargo would compile all
+//! dependencies once more, for its own way to panic.
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
