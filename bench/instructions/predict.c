@@ -42,7 +42,7 @@ static void *take(size_t size) {
   void *taken = memory + used;
   used += (size + 15) / 16 * 16;
   if (used > MEMORY) {
-    fprintf(stderr, "predict: %zu bytes are needed of %u\n", used, MEMORY);
+    fprintf(stderr, "predict: %lu bytes are needed of %u\n", (unsigned long)used, MEMORY);
     exit(1);
   }
   return taken;
@@ -59,44 +59,48 @@ int main(int argc, char **argv) {
   if (!file) fail("there is no input");
   // Vertices, triangles, points.
   const uint32_t *counts = read_array(file, 12);
+  const float *vertices = read_array(file, 12ul * counts[0]);
+  const uint32_t *triangles = read_array(file, 12ul * counts[1]);
+  const float *points = read_array(file, 12ul * counts[2]), *normals = read_array(file, 12ul * counts[2]);
   const hangpose_mesh mesh = {.struct_size = sizeof mesh,
                               .vertex_count = counts[0],
                               .triangle_count = counts[1],
-                              .vertices = read_array(file, 12ul * counts[0]),
-                              .triangles = read_array(file, 12ul * counts[1])};
-  const hangpose_cloud cloud = {.struct_size = sizeof cloud,
-                                .point_count = counts[2],
-                                .points = read_array(file, 12ul * counts[2]),
-                                .normals = read_array(file, 12ul * counts[2])};
+                              .vertices = vertices,
+                              .triangles = triangles};
+  const hangpose_cloud cloud = {
+      .struct_size = sizeof cloud, .point_count = counts[2], .points = points, .normals = normals};
   fclose(file);
   const size_t before = used;
   for (unsigned profile = 0; profile < 2; ++profile) {
     hangpose_params params;
     hangpose_limits limits = {.struct_size = sizeof limits};
+    hangpose_detail detail = {.struct_size = sizeof detail};
     hangpose_object *object;
     hangpose_supporter *supporter;
     hangpose_pose poses[10];
     hangpose_prediction found = {.struct_size = sizeof found};
     if (hangpose_params_init(&params, sizeof params, profile ? HANGPOSE_PROFILE_DEFAULT : HANGPOSE_PROFILE_PAPER,
-                             HANGPOSE_ABI_VERSION, NULL) ||
-        hangpose_limits_of(&params, &mesh, &cloud, &limits, NULL))
-      fail("the input is not valid");
+                             HANGPOSE_ABI_VERSION, &detail) ||
+        hangpose_limits_of(&params, &mesh, &cloud, &limits, &detail))
+      fail(detail.message);
     limits.poses = 10;
     used = before;
     const size_t sizes[3] = {hangpose_object_bytes(&limits), hangpose_supporter_bytes(&limits),
                              hangpose_predict_bytes(&limits)};
     void *of_object = take(sizes[0]), *of_supporter = take(sizes[1]), *work = take(sizes[2]);
     mark(0);
-    if (hangpose_object_create(of_object, sizes[0], &mesh, &params, NULL, &object, NULL)) fail("no object");
+    if (hangpose_object_create(of_object, sizes[0], &mesh, &params, NULL, &object, &detail)) fail(detail.message);
     mark(1);
-    if (hangpose_supporter_create(of_supporter, sizes[1], &cloud, &params, NULL, &supporter, NULL)) fail("no supporter");
+    if (hangpose_supporter_create(of_supporter, sizes[1], &cloud, &params, NULL, &supporter, &detail))
+      fail(detail.message);
     mark(2);
     const hangpose_status status = hangpose_predict(object, supporter, NULL, &params, work, sizes[2], NULL, poses,
-                                                    sizeof *poses, 10, &found, NULL);
+                                                    sizeof *poses, 10, &found, &detail);
     mark(3);
-    if (status < 0) fail("no prediction");
-    printf("profile %u: %u poses, best at %.9g %.9g %.9g, %zu bytes\n", profile, (unsigned)found.pose_count,
-           poses[0].position[0], poses[0].position[1], poses[0].position[2], used - before);
+    if (status < 0) fail(detail.message);
+    printf("profile %u: %u poses, best at %.9g %.9g %.9g, %lu bytes\n", profile, (unsigned)found.pose_count,
+           poses[0].position[0], poses[0].position[1], poses[0].position[2],
+           (unsigned long)(used - before));
   }
   return 0;
 }
