@@ -61,9 +61,9 @@ def spread(values):
     return f"{number(median(values))} ({number(quantile(values, 0.05))}–{number(quantile(values, 0.95))})"
 
 
-def table(header, rows):
-    """A table in Markdown; the first column is text."""
-    rule = ["---"] + ["--:"] * (len(header) - 1)
+def table(header, rows, text=(0,)):
+    """A table in Markdown; the columns of these indices are text, the others numbers."""
+    rule = ["---" if index in text else "--:" for index in range(len(header))]
     return "\n".join("| " + " | ".join(map(str, row)) + " |" for row in [header, rule, *rows])
 
 
@@ -117,7 +117,7 @@ class Report:
             self.figure(f"`{profile}`, supporter and matching, median", median(times["supporter and matching"]), "ms")
             self.figure(f"`{profile}`, memory, most", max(memory), "MiB")
         pairs = len({row["pair"] for row in rows})
-        self.tables["stages"] = f"{pairs} pairs; milliseconds:\n\n" + table(["profile", "stage", "median", "95 %", "most"], lines)
+        self.tables["stages"] = f"{pairs} pairs; milliseconds:\n\n" + table(["profile", "stage", "median", "95 %", "most"], lines, (0, 1))
 
     def peer(self):
         rows = read(self.raw / "peer.jsonl")
@@ -149,11 +149,11 @@ class Report:
             over = {c: sum(c in row["peer"] and row["peer"][c] is None for row in some) for c in ("one", "all")}
             said.append(f"{len(some)} {name} pairs, the peer over {some[0]['limit']:.0f} s in {over['one']} (1 core) and {over['all']} "
                         f"(all {some[0]['cores']} cores)")
-        self.tables["peer"] = "; ".join(said) + ". Milliseconds and ratios:\n\n" + table(header, lines)
+        self.tables["peer"] = "; ".join(said) + ". Milliseconds and ratios:\n\n" + table(header, lines, (0, 1))
         for (p, cores), ratios in ratios_of.items():
             if ratios:
                 of = "one core" if cores == "one" else "all cores"
-                self.figure(f"peer on {of} / `{p}`, median over all pairs", median(ratios), "times", True)
+                self.figure(f"peer on {of} / `{p}`, median over all pairs", median(ratios), "", True)
 
     def primitives(self):
         found = read(self.raw / "primitives.json")
@@ -195,9 +195,9 @@ class Report:
             self.figure(f"{title}", factor * mine, unit)
             for name in ("embree", "parry", "mujoco", "bullet"):
                 if name in times:
-                    self.figure(f"{title}, hangpose / {name}", mine / median(times[name]), "times")
+                    self.figure(f"{title}, hangpose / {name}", mine / median(times[name]), "")
         missing = f"\n\nMissing here: {', '.join(found['missing'])}." if found["missing"] else ""
-        self.tables["primitives"] = table(["query", "library", "median (5–95 %)", "hangpose / it", "what differs"], lines) + missing
+        self.tables["primitives"] = table(["query", "library", "median (5–95 %)", "hangpose / it", "what differs"], lines, (0, 1, 4)) + missing
         self.groups = groups
 
     def paths(self):
@@ -211,7 +211,7 @@ class Report:
         lines = [[name, len(both), count, spread(times)] for name, count, times in (("hangpose", found[0], ours), ("OMPL", found[1], theirs))]
         self.tables["paths"] = table(["planner", "problems", "paths found", "ms, median (5–95 %)"], lines) + \
             f"\n\nOn the problems that both solve, OMPL takes {spread(ratios)} times as long."
-        self.figure("path, OMPL / hangpose", median(ratios) if ratios else None, "times", True)
+        self.figure("path, OMPL / hangpose", median(ratios) if ratios else None, "", True)
 
     def growth(self):
         rows = read(self.raw / "growth.jsonl")
@@ -230,7 +230,7 @@ class Report:
                 if (axis, row["size"]) in {("triangles", 200_000), ("room", 300_000)}:
                     self.figure(f"`{row['profile']}`, {row['size']:,} {axis}".replace(",000", " 000"), sum(times), "ms")
             if lines:
-                parts.append(f"By {title}; milliseconds:\n\n" + table([axis, "profile", *STAGES, "all", "memory, MiB"], lines))
+                parts.append(f"By {title}; milliseconds:\n\n" + table([axis, "profile", *STAGES, "all", "memory, MiB"], lines, (1,)))
             for profile in PROFILES:
                 upper = [row for row in rows if (row["axis"], row["profile"]) == (axis, profile) and row["size"] >= UPPER]
                 if len(upper) < 2:
@@ -241,7 +241,8 @@ class Report:
                 fits.append([axis, profile, *map(number, each), number(fit(lambda row: sum(row["milliseconds"]))),
                              number(fit(lambda row: sum(row["bytes"])))])
         if fits:
-            parts.append(f"Exponents, fitted from {UPPER:,} on:\n\n".replace(",", " ") + table(["by", "profile", *STAGES, "all", "memory"], fits))
+            parts.append("Exponents, fitted from 10 000 on; that of all is low where a part that does not grow takes most of the time:\n\n"
+                         + table(["by", "profile", *STAGES, "all", "memory"], fits, (0, 1)))
         self.tables["growth"] = "\n\n".join(parts)
 
     def bound(self):
@@ -267,12 +268,13 @@ class Report:
                               number(median([t / l for t, l in zip(times, least) if l > 0])) if any(least) else "–"])
             ratio = median([t / l for t, l in zip(time_of, least_of)])
             lines.append([profile, "all", "", "", number(median(least_of)), number(median(time_of)), number(ratio)])
-            self.figure(f"`{profile}`, time / lower bound, median", ratio, "times")
+            self.figure(f"`{profile}`, time / lower bound, median", ratio, "")
         costs = [f"a ray {number(1e9 * ray[0])} ns ({ray[1]})"]
         costs += [f"a distance query of {stage} {number(1e9 * cost)} ns ({name})" for stage, (cost, name) in distance.items()]
+        costs += [f"the eight neighbours of a point {number(1e9 * best['eight_nearest'][0])} ns ({best['eight_nearest'][1]})"]
         costs += [f"the samples of the object {number(1e3 * best['poisson_disk'][0])} ms ({best['poisson_disk'][1]})"]
         self.tables["bound"] = "Best costs: " + "; ".join(costs) + ". Medians over the pairs:\n\n" + table(
-            ["profile", "stage", "rays", "distance queries", "bound, ms", "time, ms", "time / bound"], lines)
+            ["profile", "stage", "rays", "distance queries", "bound, ms", "time, ms", "time / bound"], lines, (0, 1))
 
     def instructions(self):
         found = read(self.raw / "instructions.json")
@@ -285,7 +287,7 @@ class Report:
                 lines.append([name, profile, *map(number, counts), number(sum(counts))])
                 self.figure(f"`{profile}`, millions of instructions, {name}", sum(counts), "")
         missing = "\n\nMissing here: " + "; ".join(found["missing"]) + "." if found["missing"] else ""
-        self.tables["instructions"] = "Millions of instructions:\n\n" + table(["processor", "profile", *STAGES, "all"], lines) + missing
+        self.tables["instructions"] = "Millions of instructions:\n\n" + table(["processor", "profile", *STAGES, "all"], lines, (0, 1)) + missing
 
     def machine(self):
         found = read(self.raw / "machine.json")
@@ -325,11 +327,11 @@ class Report:
             now = value(label)
             if now is not None:
                 met = now >= limit if sign == ">=" else now <= limit
-                lines.append([label, f"{'≥' if sign == '>=' else '≤'} {limit}", f"{number(now)} {self.figures[label][1]}", "yes" if met else "no"])
+                lines.append([label, f"{'≥' if sign == '>=' else '≤'} {limit}", f"{number(now)} {self.figures[label][1]}".strip(), "yes" if met else "no"])
         if slopes:
             lines.append(["`default`, largest exponent of growth", f"≤ {most:.2f} (n log n)", number(max(slopes)), "yes" if max(slopes) <= most else "no"])
         if lines:
-            self.tables["targets"] = table(["figure", "target", "now", "met"], lines)
+            self.tables["targets"] = table(["figure", "target", "now", "met"], lines, (0, 3))
 
     def change(self, before):
         if not before:

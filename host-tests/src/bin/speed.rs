@@ -26,7 +26,7 @@ struct Arguments {
     task: Option<Task>,
     #[command(flatten)]
     pairs: Pairs,
-    /// Number of runs, of which the median counts.
+    /// Number of runs, of which the fastest counts, stage by stage.
     #[arg(long, default_value_t = 3)]
     runs: usize,
     /// File for the figures of each pair, one line of JSON each.
@@ -68,7 +68,7 @@ enum Task {
         /// Largest size.
         #[arg(long, default_value_t = 1_000_000)]
         largest: usize,
-        /// Number of runs, of which the median counts.
+        /// Number of runs, of which the fastest counts, stage by stage.
         #[arg(long, default_value_t = 3)]
         runs: usize,
         /// Folder of the samples.
@@ -164,7 +164,7 @@ fn measure_pairs(
     runs: usize,
     mut file: Option<File>,
 ) -> Result<()> {
-    println!("{} pairs, median of {runs} runs each, one thread, milliseconds", cases.len());
+    println!("{} pairs, the fastest of {runs} runs each, one thread, milliseconds", cases.len());
     println!("| profile | stage | median | 95 % | most |\n|---|---|--:|--:|--:|");
     for &(profile, ref params) in profiles {
         let mut all = Vec::new();
