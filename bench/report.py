@@ -259,7 +259,8 @@ class Report:
             least_of, time_of = [0.0] * len(ours), [0.0] * len(ours)
             for k, stage in enumerate(STAGES):
                 least = [1000 * (row["rays"][k] * ray[0] + row["distance_queries"][k] * distance[stage][0]
-                                 + (best["poisson_disk"][0] if stage == "object" else 0)) for row in ours]
+                                 + (best["poisson_disk"][0] if stage == "object" else 0)
+                                 + (row["points"] * best["eight_nearest"][0] if stage == "supporter" else 0)) for row in ours]
                 times = [row["milliseconds"][k] for row in ours]
                 least_of = [a + b for a, b in zip(least_of, least)]
                 time_of = [a + b for a, b in zip(time_of, times)]
@@ -288,6 +289,19 @@ class Report:
                 self.figure(f"`{profile}`, millions of instructions, {name}", sum(counts), "")
         missing = "\n\nMissing here: " + "; ".join(found["missing"]) + "." if found["missing"] else ""
         self.tables["instructions"] = "Millions of instructions:\n\n" + table(["processor", "profile", *STAGES, "all"], lines, (0, 1)) + missing
+
+    def threads(self):
+        found = read(self.raw / "threads.json")
+        if found is None:
+            return
+        ratios = [one / two for one, two in zip(found["single"]["1"], found["single"]["2"])]
+        batch = {jobs: min(times) for jobs, times in found["batch"].items()}
+        gain = batch["1"] / batch["2"]
+        lines = [["one prediction, ms", number(1000 * median(found["single"]["1"])), number(1000 * median(found["single"]["2"])), spread(ratios)],
+                 [f"a table of {found['pairs']} pairs, s", number(batch["1"]), number(batch["2"]), number(gain)]]
+        self.tables["threads"] = table(["", "one thread", "two threads", "times as fast"], lines)
+        self.figure("one prediction, two threads", median(ratios), "times as fast", True)
+        self.figure("a table of pairs, two threads", gain, "times as fast", True)
 
     def machine(self):
         found = read(self.raw / "machine.json")
@@ -321,6 +335,8 @@ class Report:
             ("closest hit, hangpose / embree", "<=", 2.5),
             ("any hit, hangpose / embree", "<=", 2.5),
             ("`default`, memory, most", "<=", 8),
+            ("one prediction, two threads", ">=", 1.6),
+            ("a table of pairs, two threads", ">=", 1.9),
         ]
         lines = []
         for label, sign, limit in asked:
@@ -367,7 +383,7 @@ def main():
         return machine(args.raw)
     report = Report(args.raw)
     for part in (report.machine, report.stages, report.peer, report.primitives, report.paths, report.growth, report.bound,
-                 report.instructions, report.targets):
+                 report.threads, report.instructions, report.targets):
         part()
     if args.keep:
         figures = {label: float(f"{value:.4g}") for label, (value, _, _) in report.figures.items()}

@@ -2,11 +2,11 @@
 # `make bench`: measures all that docs/PERFORMANCE.md shows, one thing after the other, and writes its tables. Raw results
 # go to build/bench. A part whose tools or data are missing is left out with a word; its tables stay as they are.
 #   run.sh [--only PART,...] [--peer PEER.py] [--meshes FOLDER]
-# Parts: stages, peer, primitives, paths, growth, instructions.
+# Parts: stages, peer, primitives, paths, growth, threads, instructions.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
-only=stages,peer,primitives,paths,growth,instructions
+only=stages,peer,primitives,paths,growth,threads,instructions
 peer=
 meshes=
 while [ $# -gt 0 ]; do
@@ -64,6 +64,14 @@ if wants paths; then
 fi
 if wants growth; then
     pinned "$bin/speed" growth --json "$raw/growth.jsonl"
+fi
+if wants threads; then
+    if [ "$(nproc)" -lt 2 ]; then
+        echo "bench: no comparison of threads: this machine has one core"
+    else
+        [ -e "$raw/pairs/made/pairs.json" ] || "$bin/speed" export --pairs 22 --out "$raw/pairs/made"
+        python3 bench/threads.py --command "$bin/hangpose" --out "$raw/threads.json" "$raw/pairs/made"
+    fi
 fi
 if wants instructions; then
     bench/instructions/run.sh "$raw/instructions.json"
