@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Times hangpose and another implementation of the paper on the same files, pair by pair, in alternation.
 
-  against_peer.py --peer PEER.py --command HANGPOSE --out FILE [--limit 60] FOLDER [FOLDER ...]
+  against_peer.py --peer PEER.py --command HANGPOSE --out FILE [--limit 30] FOLDER [FOLDER ...]
 
 PEER.py must define `load(object, supporter, scale, supporter_mesh)` and `predict(mesh, points, normals)`, which returns
 poses and a dict of seconds. A folder holds `pairs.json`, as `speed export` writes it. hangpose runs on one core; the peer
@@ -80,7 +80,7 @@ def main():
     parser.add_argument("--peer", required=True)
     parser.add_argument("--command", required=True)
     parser.add_argument("--out", type=pathlib.Path, required=True)
-    parser.add_argument("--limit", type=float, default=60)
+    parser.add_argument("--limit", type=float, default=30)
     parser.add_argument("folders", nargs="+", type=pathlib.Path)
     args = parser.parse_args()
     cores = sorted(os.sched_getaffinity(0))

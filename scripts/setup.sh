@@ -104,6 +104,6 @@ done
 # The drawing of flame graphs, into the folder of build products.
 inferno=0.12.8
 tools=$(cd "$(dirname "$0")/.." && pwd)/build/tools
-if [ "${1:-}" = profile ] && ! "$tools/bin/inferno-flamegraph" --version 2>/dev/null | grep -q "$inferno"; then
+if [ "${1:-}" = profile ] && ! grep -qF "\"inferno $inferno " "$tools/.crates.toml" 2>/dev/null; then
     cargo install --quiet --locked --version "$inferno" --root "$tools" inferno
 fi
