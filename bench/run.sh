@@ -26,12 +26,14 @@ wants() { case ,$only, in *,"$1",*) ;; *) return 1 ;; esac; echo "bench: $1, $(d
 # Everything on the first core, so that two runs compare; the peer also takes the others.
 core=$(python3 -c 'import os; print(min(os.sched_getaffinity(0)))')
 pinned() { taskset -c "$core" "$@"; }
+status=0
+broken() { echo "bench: $1 failed; its tables stay as they are" >&2; rm -f "$raw/$2"; status=1; }
 has() { "$python" -c "import $1" 2>/dev/null; }
 
 python3 bench/report.py --raw "$raw" --machine
 
 if wants stages; then
-    pinned "$bin/speed" --pairs 44 --triangles 20000 --json "$raw/stages.jsonl"
+    pinned "$bin/speed" --pairs 44 --triangles 20000 --json "$raw/stages.jsonl" || broken stages stages.jsonl
 fi
 if wants peer; then
     if [ -z "$peer" ] || [ ! -e "$peer" ]; then
@@ -48,7 +50,8 @@ if wants peer; then
         else
             echo "bench: no real pairs: give MESHES=folder"
         fi
-        "$python" bench/against_peer.py --peer "$peer" --command "$bin/hangpose" --out "$raw/peer.jsonl" "${folders[@]}"
+        "$python" bench/against_peer.py --peer "$peer" --command "$bin/hangpose" --out "$raw/peer.jsonl" "${folders[@]}" ||
+            broken peer peer.jsonl
     fi
 fi
 if wants primitives; then
@@ -57,23 +60,26 @@ if wants primitives; then
     interpreter=$python
     has numpy || interpreter=python3
     "$interpreter" bench/primitives.py --data "$raw/primitives" --bench "$bin/primitives" --criterion "$raw/criterion" \
-        --out "$raw/primitives.json"
+        --out "$raw/primitives.json" || broken primitives primitives.json
 fi
 if wants paths; then
-    pinned "$bin/reach" --pairs 22 --trees 0 --enclosed 0 --scene nothing,wall --peer --json "$raw/reach.jsonl" >/dev/null
+    pinned "$bin/reach" --pairs 22 --trees 0 --enclosed 0 --scene nothing,wall --peer --json "$raw/reach.jsonl" >/dev/null ||
+        broken paths reach.jsonl
 fi
 if wants growth; then
-    pinned "$bin/speed" growth --json "$raw/growth.jsonl"
+    pinned "$bin/speed" growth --json "$raw/growth.jsonl" || broken growth growth.jsonl
 fi
 if wants threads; then
     if [ "$(nproc)" -lt 2 ]; then
         echo "bench: no comparison of threads: this machine has one core"
     else
         [ -e "$raw/pairs/made/pairs.json" ] || "$bin/speed" export --pairs 22 --out "$raw/pairs/made"
-        python3 bench/threads.py --command "$bin/hangpose" --out "$raw/threads.json" "$raw/pairs/made"
+        python3 bench/threads.py --command "$bin/hangpose" --out "$raw/threads.json" "$raw/pairs/made" ||
+            broken threads threads.json
     fi
 fi
 if wants instructions; then
-    bench/instructions/run.sh "$raw/instructions.json"
+    bench/instructions/run.sh "$raw/instructions.json" || broken instructions instructions.json
 fi
 python3 bench/report.py --raw "$raw" --out docs/PERFORMANCE.md
+exit $status
