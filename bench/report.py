@@ -50,6 +50,7 @@ def number(value):
         return "–"
     if value == 0:
         return "0"
+    value = float(f"{value:.3g}") if abs(value) < 1000 else value
     digits = max(0, 2 - math.floor(math.log10(abs(value))))
     return f"{value:,.{digits}f}".replace(",", " ")
 
@@ -249,7 +250,8 @@ class Report:
         rows, found = read(self.raw / "stages.jsonl"), read(self.raw / "primitives.json")
         if rows is None or found is None:
             return
-        best = {group: min((median(values), name) for name, values in times.items()) for group, times in found["groups"].items()}
+        # The fastest, as of the stages.
+        best = {group: min((min(values), name) for name, values in times.items()) for group, times in found["groups"].items()}
         ray = min(best["any_hit"], best["closest_hit"])
         # What a distance query is: to the mesh, to the nearest point of the cloud, and to the mesh by the distance field.
         distance = {"object": best["closest_point"], "supporter": best["nearest"], "matching": best["signed_distance"]}
