@@ -26,9 +26,16 @@ perf record --event cpu-clock --freq 997 --call-graph fp --output "$data" -- "$t
     echo "profile: perf could not record; as another user than root, set kernel.perf_event_paranoid to 2 or less" >&2
     exit 1
 }
-perf script --input "$data" 2>/dev/null | "$inferno/inferno-collapse-perf" |
-    "$inferno/inferno-flamegraph" --title "hangpose: ${options[*]}" >build/profile.svg
-perf report --input "$data" --no-children --stdio --call-graph none --percent-limit 0.5 2>/dev/null |
-    grep -v '^#\|^$' >build/profile.txt
-head -12 build/profile.txt
+# Only what is measured: not the generation of shapes and clouds.
+perf script --input "$data" 2>/dev/null | "$inferno/inferno-collapse-perf" | { grep 'performance::stages::measure' || true; } |
+    sed -E 's/^.*performance::stages::measure[^;]*;//' >build/profile.folded
+[ -s build/profile.folded ] || {
+    echo "profile: perf recorded no predictions" >&2
+    exit 1
+}
+"$inferno/inferno-flamegraph" --title "hangpose: ${options[*]}" build/profile.folded >build/profile.svg
+awk '{ count = $NF; sub(/ [0-9]+$/, ""); n = split($0, frames, ";"); own[frames[n]] += count; all += count }
+    END { for (frame in own) printf "%6.2f %%  %s\n", 100 * own[frame] / all, frame }' build/profile.folded |
+    sort -rn >build/profile.txt
+head -12 build/profile.txt || true
 echo "profile: build/profile.svg, build/profile.txt"

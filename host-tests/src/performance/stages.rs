@@ -39,7 +39,8 @@ impl Figures {
     }
 }
 
-/// Predicts `runs` times in the same memory.
+/// Predicts `runs` times in the same memory. A function of its own also when compiled, for `scripts/profile.sh`.
+#[inline(never)]
 pub fn measure(mesh: &Mesh, cloud: &Cloud, params: &Params, runs: usize) -> Result<Figures> {
     let monitor = Monitor::new();
     let limits = Limits { points: cloud.points().len(), ..Object::limits(mesh, params) };
