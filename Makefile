@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo picture test test_rust test_c book bench tables meant reach calibrate peer lib command build_command install deb dist abi \
+.PHONY: help setup demo picture test test_rust test_c book bench profile tables meant reach calibrate peer lib command build_command install deb dist abi \
 	samples header clean
 
 help:
@@ -7,8 +7,9 @@ help:
 	@echo "make picture  make the pictures of the README anew: docs/demo.png and docs/hang.gif"
 	@echo "make book     build the book in build/book and check all that it says"
 	@echo "make test     run all checks and tests"
-	@echo "make bench    measure time and memory"
-	@echo "make peer     compare time and poses with another implementation: PEER=peer.py [MESHES=folder]"
+	@echo "make bench    measure time and memory, also of other libraries, and write docs/PERFORMANCE.md [PEER=peer.py] [MESHES=folder]"
+	@echo "make profile  show where the time goes: build/profile.svg and build/profile.txt"
+	@echo "make peer     compare poses with another implementation: PEER=peer.py MESHES=folder"
 	@echo "make tables   simulate 600 pairs in two engines and write docs/RESULTS.md [MESHES=folder adds real meshes]"
 	@echo "make meant    measure kinds, turned frames, mug trees, tolerances and probabilities [MESHES=folder adds real meshes]"
 	@echo "make reach    plan paths in several scenes, replay them in Bullet and write two sections of docs/RESULTS.md"
@@ -45,6 +46,7 @@ test: setup
 	scripts/book.sh
 
 test_rust:
+	python3 -m unittest discover --start-directory bench
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
@@ -63,8 +65,17 @@ test_c:
 book: setup
 	scripts/book.sh
 
-bench: setup
-	cargo bench --workspace
+# Open3D and MuJoCo are not to be had everywhere: what needs them is left out then.
+bench:
+	@scripts/setup.sh bench
+	@$(MAKE) --no-print-directory $(peer_python) || echo "bench: no Open3D and MuJoCo here"
+	cargo build --release -p hangpose
+	cargo build --release -p host-tests --features peers --bin speed --bin reach --bin primitives
+	bench/run.sh $(if $(PEER),--peer $(PEER)) $(if $(MESHES),--meshes $(MESHES)) $(if $(ONLY),--only $(ONLY))
+
+profile:
+	@scripts/setup.sh profile
+	scripts/profile.sh
 
 # Images of the object and of the supporter; s is for sensible single views.
 scans = 24+3,24+1,3+1,1+1s,1+1
@@ -113,8 +124,7 @@ calibrate: setup $(peer_python)
 
 peer: setup $(peer_python)
 	cargo build --release -p hangpose
-	$(peer_python) bench/peer.py --peer $(PEER) time samples/mug.obj samples/mug_tree.ply
-	$(if $(MESHES),$(peer_python) bench/peer.py --peer $(PEER) agree --meshes $(MESHES))
+	$(peer_python) bench/peer.py --peer $(PEER) --meshes $(MESHES)
 
 header:
 	cargo run -p hangpose-ffi --example header

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Compares hangpose with another implementation of the paper, written with Open3D and scikit-learn.
+"""Compares poses of hangpose with those of another implementation of the paper, written with Open3D and scikit-learn.
 
-  peer.py --peer PEER.py time   OBJECT SUPPORTER            time and memory of both on the same files, in alternation
-  peer.py --peer PEER.py agree  --meshes DIR [OBJECT:SUPPORTER ...]   whether the best poses of both agree
+  peer.py --peer PEER.py --meshes DIR [OBJECT:SUPPORTER ...]   whether the best poses of both agree
+
+against_peer.py compares their times.
 
 PEER.py must define `load(object, supporter, scale, supporter_mesh)` and `predict(mesh, points, normals)`, which
 returns ranked poses (dicts with a 4x4 `pose`) and timings. DIR holds meshes with a `manifest.json` that gives
@@ -30,32 +31,12 @@ PAIRS = pathlib.Path(__file__).with_name("pairs.txt")
 
 
 def hangpose(command, *arguments):
-    """Returns poses and statistics of one prediction with the `paper` profile on one thread."""
+    """Returns the poses of one prediction with the `paper` profile on one thread."""
     run = [command, "predict", "--profile", "paper", "--threads", "1", "--json", "-", *map(str, arguments)]
     result = subprocess.run(run, capture_output=True, text=True)
     if result.returncode not in (0, 3):
         sys.exit(result.stderr)
-    document = json.loads(result.stdout)
-    return [np.array(p["pose"]).reshape(4, 4) for p in document["poses"]], document["stats"]
-
-
-def time(peer, command, args):
-    """Times both in alternation, so that a change of the machine's speed affects both."""
-    mesh, points, normals = peer.load(args.object, args.supporter, 1.0, False)
-    peer.predict(mesh, points, normals)
-    theirs, ours = [], []
-    for _ in range(args.runs):
-        theirs.append(peer.predict(mesh, points, normals)[1]["total_s"])
-        stats = hangpose(command, "--object", args.object, "--supporter", args.supporter)[1]
-        ours.append(sum(stats["seconds"][stage] for stage in ("object", "supporter", "matching")))
-    ratios = sorted(t / o for t, o in zip(theirs, ours))
-    print(f"object {args.object}, supporter {args.supporter}: {len(points)} points, {args.runs} alternating runs")
-    print(f"peer      {statistics.median(theirs):8.3f} s (median)")
-    print(f"hangpose  {statistics.median(ours):8.3f} s (median), profile paper, one thread")
-    print(f"ratio     {statistics.median(ratios):8.1f} (median), {ratios[0]:.1f} to {ratios[-1]:.1f}")
-    memory = stats["memory_bytes"]
-    total = sum(memory.values())
-    print(f"memory    {total / 2**20:8.2f} MiB of model and scratch: {memory}")
+    return [np.array(p["pose"]).reshape(4, 4) for p in json.loads(result.stdout)["poses"]]
 
 
 def load(entry, folder):
@@ -101,7 +82,7 @@ def agree(peer, command, args):
             o3d.io.write_triangle_mesh(object_file, mesh)
             o3d.io.write_point_cloud(supporter_file, cloud)
             files = ("--object", object_file, "--supporter", supporter_file)
-            ours = [hangpose(command, *files, "--seed", seed)[0] for seed in range(args.runs)]
+            ours = [hangpose(command, *files, "--seed", seed) for seed in range(args.runs)]
         theirs = [[p["pose"] for p in peer.predict(mesh, points, normals)[0]] for _ in range(args.runs)]
         rate = lambda some: statistics.mean(do_agree(a, b, centre) for a, b in some)
         cross = rate(list(itertools.product(ours, theirs)))
@@ -118,20 +99,13 @@ def main():
     parser.add_argument("--peer", required=True)
     parser.add_argument("--command", default="target/release/hangpose")
     parser.add_argument("--runs", type=int, default=5)
-    tasks = parser.add_subparsers(required=True)
-    task = tasks.add_parser("time")
-    task.add_argument("object")
-    task.add_argument("supporter")
-    task.set_defaults(task=time)
-    task = tasks.add_parser("agree")
-    task.add_argument("--meshes", required=True)
-    task.add_argument("pairs", nargs="*", default=PAIRS.read_text().split())
-    task.set_defaults(task=agree)
+    parser.add_argument("--meshes", required=True)
+    parser.add_argument("pairs", nargs="*", default=PAIRS.read_text().split())
     args = parser.parse_args()
     spec = importlib.util.spec_from_file_location("peer", args.peer)
     peer = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(peer)
-    args.task(peer, args.command, args)
+    agree(peer, args.command, args)
 
 
 if __name__ == "__main__":

@@ -1,13 +1,17 @@
-//! Compiles the shims over the two physics engines and a planner. They are optimised in every profile, since they dominate the
-//! run time.
+//! Compiles the shims over the two physics engines, a planner and, for `make bench`, a tree of points. They are optimised in
+//! every profile, since they dominate the run time.
 
 fn main() {
     let mut missing = Vec::new();
-    for (source, library, minimum, package) in [
+    let mut shims = vec![
         ("judge/bullet", "bullet", "3.0", "libbullet-dev"),
         ("judge/ode", "ode", "0.16", "libode-dev"),
         ("reach/ompl", "ompl", "1.5", "libompl-dev"),
-    ] {
+    ];
+    if std::env::var_os("CARGO_FEATURE_PEERS").is_some() {
+        shims.push(("performance/nanoflann", "nanoflann", "1.4", "libnanoflann-dev"));
+    }
+    for (source, library, minimum, package) in shims {
         // `compile` links the libraries, after the shims that need them.
         match pkg_config::Config::new().atleast_version(minimum).cargo_metadata(false).probe(library) {
             Ok(found) => compile(source, &found),

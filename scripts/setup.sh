@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the missing tools of `make test` and `make demo`, and with the argument `dist` those of `make dist`. Quick if
-# nothing is missing.
+# Installs the missing tools of `make test` and `make demo`, and with the argument `dist`, `bench` or `profile` those of that
+# target of make, too. Quick if nothing is missing.
 set -euo pipefail
 
 as_root() {
@@ -72,10 +72,21 @@ fi
 
 # The C compiler and the emulator for aarch64.
 targets=(thumbv7em-none-eabihf)
-if [ "${1:-}" = dist ]; then
+if [ "${1:-}" = dist ] || [ "${1:-}" = bench ]; then
     command -v aarch64-linux-gnu-gcc >/dev/null || missing+=(gcc-aarch64-linux-gnu libc6-dev-arm64-cross)
     command -v qemu-aarch64 >/dev/null || missing+=(qemu-user)
     targets+=(aarch64-unknown-linux-gnu)
+fi
+
+# The peer for nearest neighbours, and the C compiler and the emulator for a Cortex-M.
+if [ "${1:-}" = bench ]; then
+    pkg-config --exists nanoflann 2>/dev/null || missing+=(libnanoflann-dev)
+    command -v taskset >/dev/null || missing+=(util-linux)
+    command -v arm-none-eabi-gcc >/dev/null || missing+=(gcc-arm-none-eabi libnewlib-arm-none-eabi)
+    command -v qemu-system-arm >/dev/null || missing+=(qemu-system-arm)
+fi
+if [ "${1:-}" = profile ]; then
+    command -v perf >/dev/null || missing+=(linux-perf)
 fi
 
 # Bare metal and aarch64: rustup's targets if they are available, else Debian's compiler with the source of `core`.
@@ -89,3 +100,10 @@ for target in "${targets[@]}"; do
 done
 
 [ ${#missing[@]} = 0 ] || apt "${missing[@]}"
+
+# The drawing of flame graphs, into the folder of build products.
+inferno=0.12.8
+tools=$(cd "$(dirname "$0")/.." && pwd)/build/tools
+if [ "${1:-}" = profile ] && ! grep -qF "\"inferno $inferno " "$tools/.crates.toml" 2>/dev/null; then
+    cargo install --quiet --locked --version "$inferno" --root "$tools" inferno
+fi

@@ -4,6 +4,7 @@
 pub mod film;
 pub mod gallery;
 pub mod judge;
+pub mod performance;
 mod predicted;
 pub mod reach;
 pub mod scan;

@@ -1,0 +1,11 @@
+//! Inputs and measurements of `make bench`: shapes of any size, files for other programs, growth, and single queries.
+
+pub mod export;
+pub mod growth;
+#[cfg(feature = "peers")]
+pub mod nanoflann;
+pub mod primitives;
+pub mod refine;
+pub mod room;
+pub mod stages;
+pub mod step;
