@@ -47,7 +47,7 @@
 #include <stdint.h>
 
 // Bytes for static arrays, constant expressions. They are never less than the size queries of the same names in lower
-// case, and up to half as much again, because they add arrays that are never needed at once. The queries are exact.
+// case, and up to twice as much, because they add arrays that are never needed at once. The queries are exact.
 #define HANGPOSE_OBJECT_BYTES(vertices, triangles, samples, voxels)                                  \
   (HANGPOSE_OBJECT_BYTES_AT_LEAST + HANGPOSE_OBJECT_BYTES_EACH_VERTEX * (size_t)(vertices) +        \
    HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE * (size_t)(triangles) +                                      \
@@ -77,25 +77,25 @@
   (HANGPOSE_SURFACE_BYTES_AT_LEAST + HANGPOSE_SURFACE_BYTES_EACH_BLOCK * (size_t)(blocks))
 // Terms of these macros: upper bounds of the growth of the queries per vertex, triangle, sample, voxel, point, pose,
 // scene point, node, waypoint and block.
-#define HANGPOSE_OBJECT_BYTES_AT_LEAST 31744
+#define HANGPOSE_OBJECT_BYTES_AT_LEAST 52224
 #define HANGPOSE_OBJECT_BYTES_EACH_VERTEX 24
 #define HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE 180
-#define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 312
-#define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 19
+#define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 336
+#define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 18
 #define HANGPOSE_SUPPORTER_BYTES_AT_LEAST 58368
-#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 506
+#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 293
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 46080
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 14
 #define HANGPOSE_PREDICT_BYTES_EACH_POSE 432
 #define HANGPOSE_PLAN_BYTES_AT_LEAST 1050624
 #define HANGPOSE_PLAN_BYTES_EACH_POINT 21
-#define HANGPOSE_PLAN_BYTES_EACH_SCENE_POINT 76
+#define HANGPOSE_PLAN_BYTES_EACH_SCENE_POINT 64
 #define HANGPOSE_PLAN_BYTES_EACH_NODE 218
 #define HANGPOSE_PLAN_BYTES_EACH_WAYPOINT 32
 #define HANGPOSE_REACHABLE_BYTES_AT_LEAST 1050624
 #define HANGPOSE_REACHABLE_BYTES_EACH_POINT 21
 #define HANGPOSE_REACHABLE_BYTES_EACH_POSE 488
-#define HANGPOSE_REACHABLE_BYTES_EACH_SCENE_POINT 76
+#define HANGPOSE_REACHABLE_BYTES_EACH_SCENE_POINT 64
 #define HANGPOSE_REACHABLE_BYTES_EACH_NODE 218
 #define HANGPOSE_REACHABLE_BYTES_EACH_WAYPOINT 32
 #define HANGPOSE_VOLUME_BYTES_AT_LEAST 2048
