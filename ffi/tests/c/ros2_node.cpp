@@ -186,7 +186,7 @@ int main(int count, char **arguments) {
   CHECK(is_nowhere({"request.region", Numbers{1.0, 1.0, 1.0, 2.0, 2.0, 2.0}}));
   CHECK(is_elsewhere({"request.allow", Kinds{"capped"}}));
   CHECK(is_elsewhere({"gravity", Numbers{0.0, 0.0, 1.0}}));
-  CHECK(is_elsewhere({"friction", 0.9}));
+  CHECK(is_elsewhere({"friction", 0.1}));
 
   // Parameters that are wrong.
   CHECK(begins(refusal({{"profile", std::string("best")}}), "profile: there is no profile 'best'"));
