@@ -47,14 +47,19 @@
 #include <stdint.h>
 
 // Bytes for static arrays, constant expressions. They are never less than the size queries of the same names in lower
-// case, and up to twice as much, because they add arrays that are never needed at once. The queries are exact.
+// case, and up to half as much again, because they add arrays that are never needed at once. The queries are exact.
+#define HANGPOSE_LARGER(a, b) ((a) > (b) ? (a) : (b))
 #define HANGPOSE_OBJECT_BYTES(vertices, triangles, samples, voxels)                                  \
-  (HANGPOSE_OBJECT_BYTES_AT_LEAST + HANGPOSE_OBJECT_BYTES_EACH_VERTEX * (size_t)(vertices) +        \
-   HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE * (size_t)(triangles) +                                      \
-   HANGPOSE_OBJECT_BYTES_EACH_SAMPLE * (size_t)(samples) +                                          \
-   HANGPOSE_OBJECT_BYTES_EACH_VOXEL * (size_t)(voxels))
+  (HANGPOSE_OBJECT_BYTES_AT_LEAST + HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE * (size_t)(triangles) +     \
+   HANGPOSE_OBJECT_BYTES_EACH_VOXEL * (size_t)(voxels) +                                            \
+   HANGPOSE_LARGER(HANGPOSE_OBJECT_BYTES_EACH_SAMPLE * (size_t)(samples),                           \
+                   HANGPOSE_OBJECT_BYTES_WORK_EACH_VERTEX * (size_t)(vertices) +                    \
+                       HANGPOSE_OBJECT_BYTES_WORK_EACH_TRIANGLE * (size_t)(triangles) +             \
+                       HANGPOSE_OBJECT_BYTES_WORK_EACH_VOXEL * (size_t)(voxels)))
 #define HANGPOSE_SUPPORTER_BYTES(points)                                                             \
-  (HANGPOSE_SUPPORTER_BYTES_AT_LEAST + HANGPOSE_SUPPORTER_BYTES_EACH_POINT * (size_t)(points))
+  HANGPOSE_LARGER(                                                                                   \
+      HANGPOSE_SUPPORTER_BYTES_FEW + HANGPOSE_SUPPORTER_BYTES_FEW_EACH_POINT * (size_t)(points),    \
+      HANGPOSE_SUPPORTER_BYTES_MANY + HANGPOSE_SUPPORTER_BYTES_MANY_EACH_POINT * (size_t)(points))
 #define HANGPOSE_PREDICT_BYTES(points, poses)                                                        \
   (HANGPOSE_PREDICT_BYTES_AT_LEAST + HANGPOSE_PREDICT_BYTES_EACH_POINT * (size_t)(points) +         \
    HANGPOSE_PREDICT_BYTES_EACH_POSE * (size_t)(poses))
@@ -78,12 +83,16 @@
 // Terms of these macros: upper bounds of the growth of the queries per vertex, triangle, sample, voxel, point, pose,
 // scene point, node, waypoint and block.
 #define HANGPOSE_OBJECT_BYTES_AT_LEAST 52224
-#define HANGPOSE_OBJECT_BYTES_EACH_VERTEX 24
-#define HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE 180
 #define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 336
-#define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 18
-#define HANGPOSE_SUPPORTER_BYTES_AT_LEAST 58368
-#define HANGPOSE_SUPPORTER_BYTES_EACH_POINT 293
+#define HANGPOSE_OBJECT_BYTES_WORK_EACH_VERTEX 24
+#define HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE 100
+#define HANGPOSE_OBJECT_BYTES_WORK_EACH_TRIANGLE 80
+#define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 4
+#define HANGPOSE_OBJECT_BYTES_WORK_EACH_VOXEL 14
+#define HANGPOSE_SUPPORTER_BYTES_FEW 58368
+#define HANGPOSE_SUPPORTER_BYTES_FEW_EACH_POINT 252
+#define HANGPOSE_SUPPORTER_BYTES_MANY 17408
+#define HANGPOSE_SUPPORTER_BYTES_MANY_EACH_POINT 293
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 46080
 #define HANGPOSE_PREDICT_BYTES_EACH_POINT 14
 #define HANGPOSE_PREDICT_BYTES_EACH_POSE 432

@@ -120,8 +120,9 @@ pub struct Params {
     /// it.
     pub settle_attempts: usize,
     /// Number of firm releases after which the search ends. A release is firm if the probability of its rest
-    /// pose is at least 97.5 %; two releases with the same rest pose count twice. A larger number gives more
-    /// different poses to choose from.
+    /// pose is at least 97.5 %, or if it hardly differs from such a pose. The search also ends after four times as
+    /// many releases in a row that come to rest without a better pose, once one has 95 %. A larger number gives
+    /// more different poses to choose from.
     pub firm_enough: usize,
     /// Minimum probability that a returned pose hangs.
     pub min_probability: f32,

@@ -26,15 +26,15 @@ fn constant(name: &str) -> usize {
 #[test]
 fn the_macros_never_give_less_than_the_queries() {
     let sizes = [0, 1, 2, 3, 100, 1000, 12_345, 100_000, 2_000_000];
-    let [at_least, vertex, triangle, sample, voxel] =
-        ["AT_LEAST", "EACH_VERTEX", "EACH_TRIANGLE", "EACH_SAMPLE", "EACH_VOXEL"]
-            .map(|name| constant(&format!("HANGPOSE_OBJECT_BYTES_{name}")));
+    let [at_least, triangle, sample, voxel] = ["AT_LEAST", "EACH_TRIANGLE", "EACH_SAMPLE", "EACH_VOXEL"]
+        .map(|name| constant(&format!("HANGPOSE_OBJECT_BYTES_{name}")));
+    let [work_vertex, work_triangle, work_voxel] = ["VERTEX", "TRIANGLE", "VOXEL"]
+        .map(|name| constant(&format!("HANGPOSE_OBJECT_BYTES_WORK_EACH_{name}")));
     let given = |limits: &hangpose_limits| {
-        at_least
-            + vertex * limits.vertices as usize
-            + triangle * limits.triangles as usize
-            + sample * limits.samples as usize
-            + voxel * limits.voxels as usize
+        let [v, t, s, x] =
+            [limits.vertices, limits.triangles, limits.samples, limits.voxels].map(|n| n as usize);
+        let work = work_vertex * v + work_triangle * t + work_voxel * x;
+        at_least + triangle * t + voxel * x + work.max(sample * s)
     };
     // SAFETY: the pointer leads to valid limits.
     let needed = |limits: &hangpose_limits| unsafe { hangpose_object_bytes(limits) };
@@ -52,20 +52,20 @@ fn the_macros_never_give_less_than_the_queries() {
             }
         }
     }
-    // The macro gives less than twice the query, for a mug and the default params.
+    // The macro gives less than 1.5 times the query, for a mug and the default params.
     let params = hangpose::Params::default();
     let (samples, voxels) = (params.samples as u32, params.voxels as u32);
     let mug = hangpose_limits { vertices: 3556, triangles: 7040, samples, voxels, ..NONE };
-    assert!(given(&mug) < 2 * needed(&mug), "{} bytes for {}", given(&mug), needed(&mug));
+    assert!(given(&mug) < needed(&mug) + needed(&mug) / 2, "{} bytes for {}", given(&mug), needed(&mug));
 
-    let [at_least, point] =
-        ["AT_LEAST", "EACH_POINT"].map(|name| constant(&format!("HANGPOSE_SUPPORTER_BYTES_{name}")));
+    let [few, each_of_few, many, each_of_many] = ["FEW", "FEW_EACH_POINT", "MANY", "MANY_EACH_POINT"]
+        .map(|name| constant(&format!("HANGPOSE_SUPPORTER_BYTES_{name}")));
     for points in sizes {
-        let given = at_least + point * points as usize;
+        let given = (few + each_of_few * points as usize).max(many + each_of_many * points as usize);
         // SAFETY: the pointer leads to valid limits.
         let needed = unsafe { hangpose_supporter_bytes(&hangpose_limits { points, ..NONE }) };
         assert!(
-            (needed..needed + needed / 7 + 4096).contains(&given),
+            (needed..needed + 4096 + needed / 20).contains(&given),
             "{points} points: {given} for {needed}"
         );
     }
@@ -79,7 +79,7 @@ fn the_macros_never_give_less_than_the_queries() {
             let needed = unsafe { hangpose_predict_bytes(&hangpose_limits { points, poses, ..NONE }) };
             assert!(
                 // Bytes for each point are rounded up to a whole number.
-                (needed..needed + needed / 7 + 4096).contains(&given),
+                (needed..needed + 4096 + needed / 20).contains(&given),
                 "{points} points, {poses} poses: {given} for {needed}"
             );
         }
@@ -135,7 +135,7 @@ fn the_macros_of_blocks_never_give_less_than_the_queries() {
         for blocks in [1, 2, 3, 100, 127, 128, 129, 1000, 12_345, 65_536, 65_537, 2_000_000, 8_388_607] {
             let (given, needed) = (at_least + block * blocks as usize, query(blocks));
             assert!(
-                (needed..needed + needed / 7 + 4096).contains(&given),
+                (needed..needed + 4096 + needed / 20).contains(&given),
                 "{name}, {blocks} blocks: {given} for {needed}"
             );
         }

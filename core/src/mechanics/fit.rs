@@ -182,7 +182,8 @@ impl Surroundings {
         })
     }
 
-    /// Observed extent of the surface towards each side, metres: by the near points, and by all points. A patch that reached over the rim of a bar's end would hold a body that slides off there.
+    /// Observed extent of the surface towards each side, metres: by the near points, and by all points. A patch that reached
+    /// over the rim of a bar's end would hold a body that slides off there.
     fn observed_extents(&self, patch: &Patch) -> [[f32; 4]; 2] {
         let across = patch.across();
         let [mut near, mut far] = [[0.0_f32; 4]; 2];

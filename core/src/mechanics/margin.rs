@@ -24,15 +24,15 @@ pub struct Margin {
     /// horizontal directions, with 70 % of the friction and gravity turning at 2.5 rad/s. It is larger than the static
     /// limit, because leaving takes time. The first direction is the supporter's x axis (or its y axis, where gravity
     /// is along x), made perpendicular to gravity; the others follow counter-clockwise seen from above.
-    /// [`Margin::MOST_TILT`] where it never left, and without a test between two such directions: of 730 directions like that
-    /// on the best poses of seeds 7 and 900, 725 were held as well. The test stops at the first direction whose tilt is too small for the
-    /// pose to be of use (0.15 radians or more); the directions that are not tested then are zero.
+    /// [`Margin::MOST_TILT`] where it never left, and without a test between two such directions (`docs/MECHANICS.md` says why).
+    /// The test stops at the first direction whose tilt is too small for the pose to be of use (0.15 radians or more); the
+    /// directions that are not tested then are zero.
     pub tilts: [f32; DIRECTIONS],
     /// Duration for which the object stays, seconds, when gravity suddenly tilts by [`Margin::JOLT`] towards
     /// the direction of the least tilt and only friction ends its swing: a robot that carries the supporter
     /// starts or stops with 0.4 g. It is [`Margin::MOST_JOLT_TIME`] if the object is still there then, and
-    /// zero if the jolt was not tested because some tilt was too small. It is not tested either where no tilt made the object
-    /// leave: such objects, 154 on the same seeds, all survived it.
+    /// zero if the jolt was not tested because some tilt was too small. Where no tilt made the object
+    /// leave it is not tested, but counts as survived.
     pub jolt_time: f32,
     /// Largest drop of the centre of mass, metres, while gravity tilted by up to 0.9 radians. An object that
     /// drops when it is shaken lies on a ledge, not firmly.
