@@ -88,5 +88,5 @@ mod random;
 #[cfg(test)]
 mod test_shapes;
 
-pub use monitor::{Monitor, Stop, Work};
+pub use monitor::{Monitor, Stop, Threads, Work};
 pub use params::{Candidates, CentreOfMass, Params, ParamsError};

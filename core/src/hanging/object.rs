@@ -72,7 +72,7 @@ impl<'m> Object<'m> {
         meter.check().map_err(|_| AnalysisError::Cancelled)?;
         let field = match params.voxels {
             0 => None,
-            voxels => Some(DistanceField::build(&surface, voxels, &mut arena)?),
+            voxels => Some(DistanceField::build(&surface, voxels, &mut arena, &mut meter)?),
         };
         let views = Views::of(mesh, &mut arena)?;
         let slots = ObjectSlots::new(params, &mut arena)?;

@@ -30,6 +30,7 @@ struct Lab<'a> {
     body: Body<'a>,
     support: Support<'a>,
     sleeps: Vec<Sleep>,
+    other_sleeps: Vec<Sleep>,
 }
 
 impl Scene {
@@ -56,7 +57,8 @@ impl Scene {
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let mass = MassProperties::of(&mesh, arena.scratch()).unwrap();
         let surface = Surface::build(&mesh, false, &mut arena).unwrap();
-        let field = DistanceField::build(&surface, VOXELS, &mut arena).unwrap();
+        let field =
+            DistanceField::build(&surface, VOXELS, &mut arena, &mut Meter::new(&Monitor::new())).unwrap();
         let points: Vec<Point> = points.iter().map(|p| Point::from(*p)).collect();
         let tree = PointTree::build(&points, &mut arena).unwrap();
         let normals: Vec<Vector> = tree.order().iter().map(|&i| Vector::from(normals[i as usize])).collect();
@@ -81,7 +83,8 @@ impl Scene {
             extent: surface.aabb().extents().max(),
             views: Views::default(),
         };
-        check(&mut Lab { body, support, sleeps: vec![Sleep::default(); Support::sleepers(count)] })
+        let sleeps = vec![Sleep::default(); Support::sleepers(count)];
+        check(&mut Lab { body, support, other_sleeps: sleeps.clone(), sleeps })
     }
 }
 
@@ -163,7 +166,8 @@ impl Lab<'_> {
         let contacts = self.contacts(rest);
         let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
         let (at, params, mut meter) = ((rest, &contacts[..]), Params::default(), Meter::new(&monitor));
-        margin(scene, at, &DOWN, &params, 0.0, &mut self.sleeps, &mut meter).unwrap()
+        let sleeps = [&mut self.sleeps[..], &mut self.other_sleeps];
+        margin(scene, at, &DOWN, &params, 0.0, sleeps, &mut meter).unwrap()
     }
 
     fn is_clear(&self, pose: &Pose, clearance: f32) -> bool {

@@ -19,7 +19,8 @@ mod sign;
 mod tests;
 
 use crate::geometry::{Aabb, Point, Surface, Vector, unit_or};
-use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
+use crate::memory::{Arena, array_bytes, larger};
+use crate::monitor::{Meter, Unfinished};
 use brick::{BLOCK, BRICK_NODES};
 use core::hint::black_box;
 use far::Far;
@@ -111,7 +112,8 @@ impl<'m> DistanceField<'m> {
         surface: &Surface,
         voxels: usize,
         arena: &mut Arena<'m>,
-    ) -> Result<Self, OutOfMemory> {
+        meter: &mut Meter,
+    ) -> Result<Self, Unfinished> {
         let grid = arena.slice::<u32>(layout::max_blocks(voxels))?;
         let (layout, bricks) = Layout::choose(surface, voxels, grid);
         let (grid, _) = grid.split_at_mut(layout.block_count());
@@ -123,7 +125,7 @@ impl<'m> DistanceField<'m> {
             *frame = Frame::of(&layout.local(corners));
         }
         let (mut nearest, places) = nearest::Nearest::new(grid, bricks, &mut scratch)?;
-        nearest.seed(surface, &layout, grid, frames);
+        nearest.seed(surface, &layout, grid, places, frames, meter)?;
         nearest.spread(surface, &layout, grid, places, frames);
 
         let far_signs = scratch.slice::<u8>(grid.len())?;

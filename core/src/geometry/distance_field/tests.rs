@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::memory::model_bytes;
+use crate::monitor::{Meter, Monitor};
 use crate::random::Random;
 use crate::test_shapes::{Shape, ball, grid, torus};
 
@@ -16,7 +17,10 @@ fn with_field(shape: &Shape, inside_out: bool, voxels: usize, check: impl FnOnce
     let needed = model_bytes(DistanceField::bytes(voxels) + DistanceField::scratch_bytes(count, voxels));
     let mut memory = vec![0xAB; needed];
     let mut arena = Arena::new(&mut memory, needed).unwrap();
-    check(&surface, &DistanceField::build(&surface, voxels, &mut arena).unwrap());
+    check(
+        &surface,
+        &DistanceField::build(&surface, voxels, &mut arena, &mut Meter::new(&Monitor::new())).unwrap(),
+    );
 }
 
 /// A box of twelve triangles with corners at the origin and at `size`.

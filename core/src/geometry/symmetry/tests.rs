@@ -3,6 +3,7 @@
 use super::*;
 use crate::geometry::{MassProperties, Surface};
 use crate::memory::{Arena, model_bytes};
+use crate::monitor::{Meter, Monitor};
 use crate::perception::sampling;
 use crate::test_shapes::{Shape, ball, prism, revolved, tube};
 use core::f32::consts::FRAC_PI_2;
@@ -22,7 +23,13 @@ fn symmetries(shape: &Shape, centre: Option<Point>) -> Vec<Symmetry> {
     let [a, b, c] = &mut memory;
     let mass = MassProperties::of(&mesh, Arena::new(c, needed[2]).unwrap()).unwrap();
     let surface = Surface::build(&mesh, mass.is_inside_out, &mut Arena::new(a, needed[0]).unwrap()).unwrap();
-    let field = DistanceField::build(&surface, VOXELS, &mut Arena::new(b, needed[1]).unwrap()).unwrap();
+    let field = DistanceField::build(
+        &surface,
+        VOXELS,
+        &mut Arena::new(b, needed[1]).unwrap(),
+        &mut Meter::new(&Monitor::new()),
+    )
+    .unwrap();
     let (mut points, mut normals) = ([Point::origin(); 10_000], [Vector::zeros(); 10_000]);
     sampling::scatter_into(&mesh, 0, &mut points, &mut normals);
     let centre = centre.or(mass.volume_centroid).unwrap();
