@@ -85,6 +85,7 @@ pub mod motion;
 mod params;
 pub mod perception;
 mod random;
+mod sort;
 #[cfg(test)]
 mod test_shapes;
 

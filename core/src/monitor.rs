@@ -76,6 +76,9 @@ impl core::fmt::Debug for Monitor<'_> {
 }
 
 const PROGRESS_STEPS: f32 = 10_000.0;
+/// Short steps, of less than a microsecond, between two looks at the monitor. A budget: the look costs a nanosecond, and a cancelled
+/// call is to end within a millisecond.
+const STEPS_A_CHECK: usize = 256;
 
 /// Why a call ended before it was done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,6 +132,13 @@ impl<'a> Meter<'a> {
         Self { monitor, work: Work::default(), poses: 0 }
     }
 
+    /// Nobody stops what it counts.
+    #[cfg(test)]
+    pub(crate) fn unwatched() -> Meter<'static> {
+        static NOBODY: Monitor<'static> = Monitor::new();
+        Meter::new(&NOBODY)
+    }
+
     /// Shows progress, a fraction from 0 to 1.
     pub(crate) fn progress(&self, fraction: f32) {
         self.monitor.progress.store((fraction * PROGRESS_STEPS) as u32, Ordering::Relaxed);
@@ -144,6 +154,16 @@ impl<'a> Meter<'a> {
     pub(crate) fn distance_queries(&mut self, count: usize) -> Result<(), Stop> {
         self.work.distance_queries += count as u64;
         self.check()
+    }
+
+    /// Whether the call was cancelled, where nothing is done that counts against the work limit.
+    pub(crate) fn check_cancelled(&self) -> Result<(), Stop> {
+        if self.monitor.is_cancelled() { Err(Stop::Cancelled) } else { Ok(()) }
+    }
+
+    /// The same, once in [`STEPS_A_CHECK`] short steps of a loop.
+    pub(crate) fn check_at(&self, step: usize) -> Result<(), Stop> {
+        if step.is_multiple_of(STEPS_A_CHECK) { self.check_cancelled() } else { Ok(()) }
     }
 
     /// Whether [`run_both`](Self::run_both) has a second thread.

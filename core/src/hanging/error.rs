@@ -2,7 +2,7 @@
 
 use super::request::RequestError;
 use crate::memory::OutOfMemory;
-use crate::monitor::Unfinished;
+use crate::monitor::{Stop, Unfinished};
 use crate::params::ParamsError;
 
 /// Why an object or a supporter cannot be analysed.
@@ -35,6 +35,12 @@ impl From<Unfinished> for AnalysisError {
             // Nothing that is counted against a work limit is done where this can happen.
             Unfinished::Stopped(_) => Self::Cancelled,
         }
+    }
+}
+
+impl From<Stop> for AnalysisError {
+    fn from(stop: Stop) -> Self {
+        Unfinished::from(stop).into()
     }
 }
 

@@ -55,21 +55,21 @@ impl Scene {
         let needed = model_bytes(lasting + scratch.into_iter().max().unwrap());
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
-        let mass = MassProperties::of(&mesh, arena.scratch()).unwrap();
-        let surface = Surface::build(&mesh, false, &mut arena).unwrap();
-        let field =
-            DistanceField::build(&surface, VOXELS, &mut arena, &mut Meter::new(&Monitor::new())).unwrap();
+        let mass = MassProperties::of(&mesh, arena.scratch(), &Meter::unwatched()).unwrap();
+        let surface = Surface::build(&mesh, false, &mut arena, &Meter::unwatched()).unwrap();
+        let field = DistanceField::build(&surface, VOXELS, &mut arena, &mut Meter::unwatched()).unwrap();
         let points: Vec<Point> = points.iter().map(|p| Point::from(*p)).collect();
-        let tree = PointTree::build(&points, &mut arena).unwrap();
+        let tree = PointTree::build(&points, &mut arena, &Meter::unwatched()).unwrap();
         let normals: Vec<Vector> = tree.order().iter().map(|&i| Vector::from(normals[i as usize])).collect();
         let room = Room::new(count, &mut arena).unwrap();
         let mut spacings = vec![0.0; count];
-        spacing::measure(&tree, &mut spacings);
+        spacing::measure(&tree, &mut spacings, &Meter::unwatched()).unwrap();
         let support = Support::fit(
             tree,
             (&normals, &spacings, &vec![0; count], &vec![0; count]),
             room,
             arena.scratch(),
+            &Meter::unwatched(),
         )
         .unwrap();
         let centre = mass.volume_centroid.expect("the test shapes are closed");

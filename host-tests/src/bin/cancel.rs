@@ -92,7 +92,12 @@ impl Probe {
         );
     }
 
-    fn analyse_object(&mut self, name: &str, (vertices, triangles): &Triangles, params: &Params) -> Result<()> {
+    fn analyse_object(
+        &mut self,
+        name: &str,
+        (vertices, triangles): &Triangles,
+        params: &Params,
+    ) -> Result<()> {
         let mesh = Mesh::new(vertices, triangles)?;
         let mut memory = vec![0; Object::bytes(&Object::limits(&mesh, params))];
         self.measure(name, |monitor| {
@@ -163,8 +168,10 @@ fn main() -> Result<()> {
     let shots = spec.shoot_object(&case.object, &[], &mut Random::named("cancel", 1));
     let images: Vec<_> = shots.iter().filter_map(|shot| shot.image()).collect();
     let frames = frames(&images);
-    let settings =
-        VolumeSettings { max_depth: MAX_DEPTH, ..VolumeSettings::new(suggested_voxel(&frames, MAX_DEPTH, None)) };
+    let settings = VolumeSettings {
+        max_depth: MAX_DEPTH,
+        ..VolumeSettings::new(suggested_voxel(&frames, MAX_DEPTH, None))
+    };
     let guess = CompletionSettings::default();
     probe.measure("scan, 3 images, completed", |monitor| {
         let _ = complete_scan(&frames, &settings, &guess, monitor);

@@ -107,11 +107,13 @@ impl<'s> Nearest<'s> {
         grid: &[u32],
         places: &[u32],
         frames: &[Frame],
-    ) {
+        meter: &Meter,
+    ) -> Result<(), Stop> {
         loop {
-            self.share_all(layout, grid, places);
+            self.share_all(layout, grid, places, meter)?;
             let mut changed = false;
             for (brick, &block) in places.iter().enumerate() {
+                meter.check_cancelled()?;
                 let known = self.known[brick];
                 let fresh = dilate(known) & !known & ALL;
                 self.fresh[brick] = fresh;
@@ -138,6 +140,7 @@ impl<'s> Nearest<'s> {
         for _ in 0..REPAIRS {
             let mut changed = false;
             for (brick, &block) in places.iter().enumerate() {
+                meter.check_cancelled()?;
                 if self.fresh[brick] == 0 {
                     continue;
                 }
@@ -158,11 +161,12 @@ impl<'s> Nearest<'s> {
             if !changed {
                 break;
             }
-            self.share_all(layout, grid, places);
+            self.share_all(layout, grid, places, meter)?;
         }
         // A brick that no other leads to: far from the mesh, as only those are that the corners of a triangle were wrongly
         // given.
         for (distances, &block) in self.distances.iter_mut().zip(places) {
+            meter.check_cancelled()?;
             for (node, distance) in distances[..BRICK_NODES].iter_mut().enumerate() {
                 if distance.is_infinite() {
                     let local = layout.first_node(block as usize)
@@ -172,6 +176,7 @@ impl<'s> Nearest<'s> {
                 }
             }
         }
+        Ok(())
     }
 
     /// The nodes that are further from their triangle than from a neighbour and on to its triangle.
@@ -187,15 +192,23 @@ impl<'s> Nearest<'s> {
     }
 
     /// Nodes that two bricks have in common take the better of both answers.
-    fn share_all(&mut self, layout: &Layout, grid: &[u32], places: &[u32]) {
+    fn share_all(
+        &mut self,
+        layout: &Layout,
+        grid: &[u32],
+        places: &[u32],
+        meter: &Meter,
+    ) -> Result<(), Stop> {
         for axis in 0..3 {
             for (brick, &block) in places.iter().enumerate() {
+                meter.check_at(brick)?;
                 let Some(next) = layout.beside(layout.place(block as usize), axis, true) else { continue };
                 if let Entry::Brick(next) = Entry::unpack(grid[next]) {
                     self.share(brick, next, axis);
                 }
             }
         }
+        Ok(())
     }
 
     /// The distances of the known nodes of a brick; infinite for all others.
@@ -297,7 +310,7 @@ impl Seeds<'_> {
         let layer = |z: f32| (z.max(0.0) as u32 / BLOCK).min(layout.blocks[2] - 1);
         for (triangle, (corners, frame)) in surface.triangles().iter().zip(frames).enumerate() {
             if triangle % TRIANGLES_A_CHECK == 0 {
-                meter.check()?;
+                meter.check_cancelled()?;
             }
             let corners = layout.local(corners);
             let min = corners[0].inf(&corners[1]).inf(&corners[2]).add_scalar(-EXACT);
