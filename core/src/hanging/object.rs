@@ -97,8 +97,11 @@ impl<'m> Object<'m> {
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
         }
-        let corners = surface.triangles().iter().flatten();
-        let reach = corners.map(|corner| (corner - centre_of_mass).norm()).fold(0.0, f32::max);
+        let mut reach = 0.0_f32;
+        for (step, corners) in surface.triangles().iter().enumerate() {
+            meter.check_at(step)?;
+            reach = corners.iter().map(|corner| (corner - centre_of_mass).norm()).fold(reach, f32::max);
+        }
         let work = meter.work;
         Ok(Self { surface, field, places, reach, mass, centre_of_mass, symmetries, views, work, stopped })
     }
