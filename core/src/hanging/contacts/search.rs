@@ -1,7 +1,7 @@
 //! Releases candidates, the most promising first, until enough of them hang.
 
 use super::candidates::CandidateSearch;
-use super::constants::{ATTEMPT_DIVISOR, MAX_SUPPORT_CONTACTS, REST_SHARE};
+use super::constants::{ATTEMPT_DIVISOR, ENOUGH_QUERIES, MAX_SUPPORT_CONTACTS, REST_SHARE};
 use super::counts::Counts;
 use super::object_contact::ObjectContact;
 use super::support_contact::{self, SupportContact};
@@ -84,6 +84,7 @@ fn release(
     meter: &mut Meter,
 ) -> Result<(), Stop> {
     let (attempts, firm_enough) = (settling.params.settle_attempts, settling.params.firm_enough);
+    let queries_before = meter.work.distance_queries;
     for attempt in 0..attempts {
         meter.progress(attempt as f32 / attempts as f32);
         let Some(candidate) = candidates.next(meter)? else { break };
@@ -92,7 +93,9 @@ fn release(
         candidates.discount(&candidate, if stays { REST_SHARE } else { 1.0 });
         let counts = &settling.counts;
         let has_enough = counts.firm_as_preferred >= firm_enough || settling.is_saturated();
-        if has_enough || counts.probable > 0 && ATTEMPT_DIVISOR * (attempt + 1) >= attempts {
+        let is_long = ATTEMPT_DIVISOR * (attempt + 1) >= attempts
+            || meter.work.distance_queries - queries_before > ENOUGH_QUERIES;
+        if has_enough || counts.probable > 0 && is_long {
             break;
         }
         // Caps alone are no reason to stop, but to look elsewhere.
