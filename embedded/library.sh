@@ -2,11 +2,11 @@
 # bench/instructions/run.sh. Needs $root.
 
 # Prints the path of the archive for a target of Rust, by rustup's compiler or by Debian's, which has the source of `core`. The
-# archive has the section .stack_sizes, which no program loads: the bytes that each function takes of the stack. FLAGS are
+# archive has what no program loads: the bytes that each function takes of the stack, and the lines of the source. FLAGS are
 # further options of rustc.
 #   library TARGET [FLAGS]
 library() {
-    local target=$1 flags="-Z emit-stack-sizes ${2:-}"
+    local target=$1 flags="-Z emit-stack-sizes -C debuginfo=line-tables-only ${2:-}"
     local dir=${CARGO_TARGET_DIR:-$root/target}/embedded${2:+/$(tr -c 'a-z0-9\n' _ <<<"$2")} with=()
     local cargo=cargo rustc=rustc
     if ! [ -e "$(rustc --print target-libdir --target "$target" 2>/dev/null)" ]; then

@@ -28,7 +28,7 @@ const LARGE: Sizes = Sizes { points: 10_000, samples: 10_000, voxels: 200_000 };
 /// Half of the time for generated pairs.
 const MIDDLE: Sizes = Sizes { points: 4000, samples: 4000, voxels: 100_000 };
 /// What fits 1 MB with [`SMALL_TRIANGLES`], see embedded/test.sh.
-const SMALL: Sizes = Sizes { points: 600, samples: 600, voxels: 12_000 };
+const SMALL: Sizes = Sizes { points: 700, samples: 1000, voxels: 20_000 };
 /// Triangles of a small mesh.
 const SMALL_TRIANGLES: usize = 1000;
 
