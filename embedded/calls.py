@@ -75,6 +75,8 @@ class Program:
             words = line.split()
             if len(words) < 5 or not words[2].startswith("R_") or section.startswith((".debug", ".stack_sizes", ".eh_", ".ARM")):
                 continue
+            if not re.fullmatch(r"[0-9a-f]+", words[3]):
+                continue
             value = int(words[3], 16) & ~1
             if len(words) >= 7 and words[5] in "+-":
                 # x86-64 counts from the end of the instruction's field.
@@ -91,7 +93,7 @@ class Program:
         sizes = {}
         for line in run("llvm-readelf", "--stack-sizes", path).splitlines():
             if found := re.match(r"\s+(\d+)\s+(\S.*)", line):
-                sizes[found[2].split(", ")[0].split("[")[0] if False else found[2]] = int(found[1])
+                sizes[found[2]] = int(found[1])
         return sizes
 
     def plain(self, names):
