@@ -265,12 +265,14 @@ static void search_twice(struct search *one, struct search *two) {
 }
 #else
 #include <pthread.h>
+#include <unistd.h>
 static void search_twice(struct search *one, struct search *two) {
-  // A thread with little stack: what the library promises, and some for the C library.
+  // A thread with little stack: what the library promises and some for the C library, or the least that there is.
+  const size_t least = (size_t)sysconf(_SC_THREAD_STACK_MIN), stack = least > 64 << 10 ? least : 64 << 10;
   pthread_t thread;
   pthread_attr_t little;
   pthread_attr_init(&little);
-  if (pthread_attr_setstacksize(&little, 64 << 10) || pthread_create(&thread, &little, search, two)) fail("no thread");
+  if (pthread_attr_setstacksize(&little, stack) || pthread_create(&thread, &little, search, two)) fail("no thread");
   search(one);
   pthread_join(thread, NULL);
   if (one->status != two->status || one->of_poses != two->of_poses || one->of_path != two->of_path)

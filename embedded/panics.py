@@ -85,8 +85,9 @@ def main():
     causes = set(re.findall(r"^## (\w+)", (ROOT / "embedded/panics.md").read_text(), re.M))
     listed = read() if LIST.exists() else {}
     if is_written:
+        cause = lambda path, name: listed[path, name][1] if (path, name) in listed else "-"
         head = "# File, function, places that can panic, and why they do not: panics.md. Written by no_panic.sh --write.\n"
-        rows = [f"{path} {name} {count} {listed.get((path, name), (0, '-'))[1]}\n" for (path, name), count in sorted(found.items())]
+        rows = [f"{path} {name} {count} {cause(path, name)}\n" for (path, name), count in sorted(found.items())]
         LIST.write_text(head + "".join(rows))
         return
     wrong = [f"{path}: {name} can panic in {found[path, name]} places and is not listed" for path, name in found.keys() - listed.keys()]

@@ -100,7 +100,15 @@ impl Patch {
             return [x * scale, y * scale];
         }
         // As `clamp`, which panics for a range that is not in order.
-        let within = |x: f32, limit: f32| if x < -limit { -limit } else if x > limit { limit } else { x };
+        let within = |x: f32, limit: f32| {
+            if x < -limit {
+                -limit
+            } else if x > limit {
+                limit
+            } else {
+                x
+            }
+        };
         [within(x, a), within(y, b)]
     }
 
