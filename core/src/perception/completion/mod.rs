@@ -195,7 +195,7 @@ impl<'m> Work<'m> {
     /// Sets the lengths of the voxels that are not outside to the radii of the balls that are kept, zero for others.
     fn find_balls(&mut self, bounds: &Bounds, meter: &Meter) -> Result<(), CompletionError> {
         for index in 0..self.states.len() {
-            if index % self.grid.strides()[2] == 0 {
+            if index.is_multiple_of(self.grid.strides()[2]) {
                 meter.check()?;
             }
             if self.state(index) != State::Outside {
