@@ -6,8 +6,8 @@ import bisect
 import re
 import subprocess
 
-# A branch or call with a known target, and one through a register or memory. In Thumb `bx lr` returns, and jump tables use
-# tbb and tbh; on x86-64 a jump through a register may be a table as well, so that only calls count.
+# A branch or call with a known target, and one through a register or memory. In Thumb `bx lr` returns, and jump
+# tables use tbb and tbh; on x86-64 a jump through a register may be a table as well, so that only calls count.
 DIRECT = re.compile(r"\t(?:call|jmp|j[a-z]+|bl?x?|b[a-z]{2}|cbn?z)(?:\.[nw])?[ \t]+(?:r\d+, )?([0-9a-f]+) <")
 INDIRECT = re.compile(r"\t(?:call +\*|blx\s+r|bx\s+(?!lr)|ldr(?:\.w)?\s+pc, \[)")
 # Types of relocations that branch or call.

@@ -1,5 +1,5 @@
-# Links programs that use every function of include/hangpose.h, for x86-64 and for a Cortex-M7; sourced by no_panic.sh and
-# stack.sh. Needs $root. Sets $every_x86_64 and $every_m7.
+# Links programs that use every function of include/hangpose.h, for x86-64 and for a Cortex-M7; sourced by no_panic.sh
+# and stack.sh. Needs $root. Sets $every_x86_64 and $every_m7.
 
 source "$root/embedded/library.sh"
 every=$root/build/embedded/every

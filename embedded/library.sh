@@ -1,9 +1,9 @@
-# Builds the C library for a target, and programs for a Cortex-M7 that link it; sourced by the scripts of this folder and by
-# bench/instructions/run.sh. Needs $root.
+# Builds the C library for a target, and programs for a Cortex-M7 that link it; sourced by the scripts of this folder
+# and by bench/instructions/run.sh. Needs $root.
 
-# Prints the path of the archive for a target of Rust, by rustup's compiler or by Debian's, which has the source of `core`. The
-# archive has what no program loads: the bytes that each function takes of the stack, and the lines of the source. FLAGS are
-# further options of rustc.
+# Prints the path of the archive for a target of Rust, by rustup's compiler or by Debian's, which has the source of
+# `core`. The archive has what no program loads: the bytes that each function takes of the stack, and the lines of the
+# source. FLAGS are further options of rustc.
 #   library TARGET [FLAGS]
 library() {
     local target=$1 flags="-Z emit-stack-sizes -C debuginfo=line-tables-only ${2:-}"
@@ -30,7 +30,8 @@ for_cortex_m7() {
         -Wl,--gc-sections -Wl,--no-warn-execstack "$@" -lm
 }
 
-# Runs a program on the board, in the folder in which it finds its files. Its clock advances by one nanosecond an instruction.
+# Runs a program on the board, in the folder in which it finds its files. Its clock advances by one nanosecond an
+# instruction.
 on_cortex_m7() {
     qemu-system-arm -M mps2-an500 -nographic -monitor none -serial none -icount shift=0 \
         -semihosting-config enable=on,target=native -kernel "$1" </dev/null

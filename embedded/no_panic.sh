@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Tests that only the functions of embedded/panics.txt can panic, in a program that uses every function of the C interface, on
-# x86-64 and on a Cortex-M7.
+# Tests that only the functions of embedded/panics.txt can panic, in a program that uses every function of the C
+# interface, on x86-64 and on a Cortex-M7.
 #   no_panic.sh [--write]      --write counts the places anew
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)

@@ -1,14 +1,16 @@
-// Predicts pairs of objects and supporters from a file, and prints hashes of what each stage found: those that the Rust
-// interface finds, bit for bit, whatever the processor. ffi/examples/pairs writes the file and prints the Rust hashes.
+// Predicts pairs of objects and supporters from a file, and prints hashes of what each stage found: those that the
+// Rust interface finds, bit for bit, whatever the processor. ffi/examples/pairs writes the file and prints the Rust
+// hashes.
 //
 //   pairs [FILE] [threads]
 //
-// A pair is seen by depth images, or given as a mesh and a cloud; it is analysed, predicted, and a path is planned. With
-// `threads`, a second thread does the last two with the same models at the same time, and must find the same bits.
+// A pair is seen by depth images, or given as a mesh and a cloud; it is analysed, predicted, and a path is planned.
+// With `threads`, a second thread does the last two with the same models at the same time, and must find the same
+// bits.
 //
-// Runs under Linux and, without an operating system, on a Cortex-M7. All memory is static. Each stage ends with a mark, so that
-// its instructions can be counted: under Linux by bench/instructions/count.c, on the Cortex-M7 by a timer of the board, which
-// qemu advances by the instruction.
+// Runs under Linux and, without an operating system, on a Cortex-M7. All memory is static. Each stage ends with a
+// mark, so that its instructions can be counted: under Linux by bench/instructions/count.c, on the Cortex-M7 by a
+// timer of the board, which qemu advances by the instruction.
 #include <hangpose.h>
 #include <inttypes.h>
 #include <stddef.h>

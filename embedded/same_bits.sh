@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Tests that models, scans, poses and paths of all pairs have the same bits, those of embedded/pairs.txt: in Rust and C; on
-# x86-64 (debug, release, and tuned to this processor), aarch64 and a Cortex-M7; with one and with two threads.
+# Tests that models, scans, poses and paths of all pairs have the same bits, those of embedded/pairs.txt: in Rust and
+# C; on x86-64 (debug, release, and tuned to this processor), aarch64 and a Cortex-M7; with one and with two threads.
 #   same_bits.sh [--write]      --write stores the bits of the Rust interface instead
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)

@@ -24,7 +24,8 @@ KNOWN = [
      "a message prints an error, which prints numbers: no type prints itself, so that each function stands there once, and"
      " core::fmt::write once for each of up to four types"),
 ]
-# Bytes for a function of another compiler, which does not report them: memcpy, and the arithmetic that the processor lacks.
+# Bytes for a function of another compiler, which does not report them: memcpy, and the arithmetic that the processor
+# lacks.
 UNKNOWN = 128
 # Calls of the caller's function, whose stack is the caller's.
 CALLERS = re.compile(r"hangpose_plan_path::\{closure#0\}::\{closure#0\}")

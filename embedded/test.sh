@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Runs the C library on a Cortex-M7 without an operating system, under qemu: from depth images, or from a mesh and a cloud, to
-# poses and a path, in 16 MB; and a small configuration in 1 MB. The results must have the stored bits, those of a desktop. The
-# archive must need nothing and contain neither an allocator nor an unwinder. aarch64 runs the same program.
+# Runs the C library on a Cortex-M7 without an operating system, under qemu: from depth images, or from a mesh and a
+# cloud, to poses and a path, in 16 MB; and a small configuration in 1 MB. The results must have the stored bits,
+# those of a desktop. The archive must need nothing and contain neither an allocator nor an unwinder. aarch64 runs the
+# same program.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 source "$root/embedded/library.sh"
