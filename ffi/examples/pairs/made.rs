@@ -102,7 +102,7 @@ fn generated(index: usize, case: &Case) -> Given {
         Shape { images, ..Shape::default() }
     } else {
         let cloud = sampled(&supporter, MIDDLE.points, case.seed);
-        let normals = if index % WITHOUT_NORMALS == 0 { Vec::new() } else { cloud.normals };
+        let normals = if index.is_multiple_of(WITHOUT_NORMALS) { Vec::new() } else { cloud.normals };
         Shape { normals, ..cloud }
     };
     let pair = given(case.name.clone(), MIDDLE, case.seed as u32, object, supporter);
