@@ -82,6 +82,13 @@ class monitor {
   }
   void cancel() noexcept { hangpose_monitor_cancel(&monitor_); }
   bool is_cancelled() const noexcept { return hangpose_monitor_is_cancelled(&monitor_) != 0; }
+  // Lends the calls that use this monitor a second thread until reset: a struct that stays where it is until then,
+  // for example hangpose::second_thread of hangpose/second_thread.hpp. The results are the same.
+  result<done> use(const hangpose_threads &threads) noexcept {
+    error why;
+    if (hangpose_monitor_use_threads(&monitor_, &threads, why.out()) != HANGPOSE_OK) return why;
+    return done{};
+  }
   // Progress of the current call, from 0 to 1.
   float progress() const noexcept { return hangpose_monitor_progress(&monitor_); }
 

@@ -91,7 +91,7 @@ in_cpp() {
     for std in c++17 c++20; do
         quiet $1 -std=$std $strict $flags -c header.cpp -o header-$1.o
         for test in wrapper ros2; do
-            quiet $1 -std=$std $strict $flags -Iexamples-c -Itests/ros2_stand_in tests/c/$test.cpp $static_libs -o $test-$1
+            quiet $1 -std=$std $strict $flags -Iexamples-c -Itests/ros2_stand_in tests/c/$test.cpp $static_libs -pthread -o $test-$1
             quiet ./$test-$1
         done
     done
@@ -102,13 +102,13 @@ gcc=$!
 wait $gcc
 quiet gcc $flags examples-c/01_static_memory.c $libs -lm -o 01-shared
 quiet env LD_LIBRARY_PATH="$prefix/lib" ./01-shared
-say "hangpose.h compiles as C99, C11, C17 and C++, hangpose.hpp and hangpose/ros2.hpp as C++17 and C++20, through" \
+say "hangpose.h compiles as C99, C11, C17 and C++, hangpose.hpp, hangpose/ros2.hpp and hangpose/second_thread.hpp as C++17 and C++20, through" \
     "pkg-config, static and shared"
 
 # ---- invalid callers, and the C++ headers, under sanitizers
 sanitize="-fsanitize=address,undefined -fno-sanitize-recover=all"
 cpp_sanitized() {
-    quiet g++ -std=c++17 -g $sanitize $flags -Iexamples-c -Itests/ros2_stand_in tests/c/$1.cpp $static_libs -o $1-sanitized
+    quiet g++ -std=c++17 -g $sanitize $flags -Iexamples-c -Itests/ros2_stand_in tests/c/$1.cpp $static_libs -pthread -o $1-sanitized
     quiet ./$1-sanitized
 }
 (log=sanitized.log; cpp_sanitized wrapper; cpp_sanitized ros2) &

@@ -85,8 +85,9 @@ pub mod motion;
 mod params;
 pub mod perception;
 mod random;
+mod sort;
 #[cfg(test)]
 mod test_shapes;
 
-pub use monitor::{Monitor, Stop, Work};
+pub use monitor::{Monitor, Stop, Threads, Work};
 pub use params::{Candidates, CentreOfMass, Params, ParamsError};

@@ -8,7 +8,7 @@ install(TARGETS hangpose_static hangpose_shared EXPORT hangpose-targets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
 install(FILES include/hangpose.h include/hangpose.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
-install(FILES include/hangpose/ros2.hpp include/hangpose/values.hpp
+install(FILES include/hangpose/ros2.hpp include/hangpose/second_thread.hpp include/hangpose/values.hpp
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hangpose COMPONENT development)
 
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hangpose)

@@ -416,6 +416,7 @@ impl From<PlanError> for Failure {
         match error {
             PlanError::Params(error) => error.into(),
             PlanError::OutOfMemory(error) => error.into(),
+            PlanError::Cancelled => Self::Cancelled,
             PlanError::NoDistanceField { hung: None } => Self::NoDistanceField,
             PlanError::NoDistanceField { hung: Some(index) } => Self::HungWithoutField { index },
             PlanError::TooManyWaypoints { needed, given } => Self::Waypoints { needed, given },

@@ -43,6 +43,7 @@ mod sample;
 mod slots;
 mod status;
 mod supporter;
+mod threads;
 mod version;
 mod volume;
 mod volume_settings;
@@ -74,6 +75,7 @@ pub use request::{
 pub use sample::{hangpose_mesh_sample, hangpose_sample_bytes};
 pub use status::*;
 pub use supporter::*;
+pub use threads::*;
 pub use version::*;
 pub use volume::*;
 pub use volume_settings::*;

@@ -2,7 +2,7 @@ use crate::border::{DETAIL, Public, Region, check, check_public, check_size, kee
 use crate::detail::hangpose_detail;
 use crate::failure::Failure;
 use crate::status::*;
-use hangpose_core::Monitor;
+use hangpose_core::{Monitor, Threads};
 
 /// Value of `work_limit` for no limit.
 pub const HANGPOSE_NO_WORK_LIMIT: u64 = 0xFFFF_FFFF_FFFF_FFFF;
@@ -85,12 +85,32 @@ pub unsafe extern "C" fn hangpose_monitor_progress(monitor: *const hangpose_moni
     unsafe { of(monitor) }.ok().flatten().map_or(0.0, Monitor::progress)
 }
 
+/// Lends a second thread to the monitor.
+///
+/// # Safety
+///
+/// The pointer is null or leads to a `hangpose_monitor` that is not used meanwhile.
+pub(crate) unsafe fn set_threads(
+    monitor: *mut hangpose_monitor,
+    threads: &'static dyn Threads,
+) -> Result<(), Failure> {
+    check(hangpose_monitor::NAME, monitor.cast_const())?;
+    // SAFETY: those of this function.
+    unsafe { of(monitor) }?;
+    // SAFETY: `of` found a monitor there, which nobody else uses.
+    let inner = unsafe { &mut *(&raw mut (*monitor).words).cast::<Monitor>() };
+    *inner = core::mem::take(inner).with_threads(threads);
+    Ok(())
+}
+
 /// The core's monitor inside, or `None` for null.
 ///
 /// # Safety
 ///
 /// The pointer is null or leads to a `hangpose_monitor` that is not moved during the call.
-pub(crate) unsafe fn of<'a>(monitor: *const hangpose_monitor) -> Result<Option<&'a Monitor>, Failure> {
+pub(crate) unsafe fn of<'a>(
+    monitor: *const hangpose_monitor,
+) -> Result<Option<&'a Monitor<'static>>, Failure> {
     if monitor.is_null() {
         return Ok(None);
     }

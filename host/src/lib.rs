@@ -22,6 +22,7 @@ mod analyze;
 pub mod files;
 pub mod parry;
 mod scan;
+mod threads;
 pub mod view;
 
 pub use analyze::{LIMITS, TooLarge, analyze_object, analyze_supporter, predict_poses, sample_supporter};
@@ -30,6 +31,7 @@ pub use scan::{
     CLOUD_VOXEL, FAIR_AGREEMENT, FuseError, ScannedCloud, ScannedMesh, complete_scan, scan, scan_cloud,
     suggested_voxel,
 };
+pub use threads::ScopedThreads;
 
 /// Compiles the Rust code of the book.
 #[cfg(doctest)]

@@ -182,6 +182,7 @@ pub(crate) fn plan(py: Python<'_>, error: &PlanError) -> PyErr {
         PlanError::Request(error) => request(py, error),
         PlanError::Motion(error) => motion(py, error),
         PlanError::OutOfMemory(_) => value(py, "memory", &text),
+        PlanError::Cancelled => cancelled(py),
         PlanError::NoDistanceField { hung: None } => value(py, "object", &text),
         PlanError::NoDistanceField { hung } => element(py, "hung", *hung, &text),
         PlanError::TooManyWaypoints { .. } => value(py, "samples", &text),

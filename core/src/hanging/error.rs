@@ -2,6 +2,7 @@
 
 use super::request::RequestError;
 use crate::memory::OutOfMemory;
+use crate::monitor::{Stop, Unfinished};
 use crate::params::ParamsError;
 
 /// Why an object or a supporter cannot be analysed.
@@ -24,6 +25,22 @@ impl From<ParamsError> for AnalysisError {
 impl From<OutOfMemory> for AnalysisError {
     fn from(error: OutOfMemory) -> Self {
         Self::OutOfMemory(error)
+    }
+}
+
+impl From<Unfinished> for AnalysisError {
+    fn from(unfinished: Unfinished) -> Self {
+        match unfinished {
+            Unfinished::OutOfMemory(error) => Self::OutOfMemory(error),
+            // Nothing that is counted against a work limit is done where this can happen.
+            Unfinished::Stopped(_) => Self::Cancelled,
+        }
+    }
+}
+
+impl From<Stop> for AnalysisError {
+    fn from(stop: Stop) -> Self {
+        Unfinished::from(stop).into()
     }
 }
 

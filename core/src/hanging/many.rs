@@ -80,7 +80,7 @@ struct Search<'a, 'o> {
     request: &'a Request<'o>,
     params: &'a Params,
     memory: &'a mut [u8],
-    monitor: &'a Monitor,
+    monitor: &'a Monitor<'a>,
     /// Of the last prediction.
     rejection: Option<Rejection>,
     found: Many,

@@ -14,7 +14,7 @@ use super::sites::{self, HangingSite, SupportSite};
 use super::stage::Stage;
 use crate::geometry::{Mesh, Point, Vector};
 use crate::memory::{Arena, OutOfMemory};
-use crate::monitor::{Meter, Stop};
+use crate::monitor::{Meter, Stop, Unfinished};
 use crate::params::{Candidates, Params};
 
 /// Memory for what a method keeps of an object.
@@ -61,9 +61,10 @@ pub(super) fn sample(
     points: &mut [Point],
     normals: &mut [Vector],
     scratch: Arena,
-) -> Result<(), OutOfMemory> {
+    meter: &Meter,
+) -> Result<(), Unfinished> {
     match params.candidates {
-        Candidates::Sites => sites::sample(mesh, params.seed, points, normals, scratch),
+        Candidates::Sites => sites::sample(mesh, params.seed, points, normals, scratch, meter),
         Candidates::Contacts => {
             contacts::sample(mesh, params.seed, points, normals);
             Ok(())
@@ -85,7 +86,7 @@ impl<'m> ObjectSlots<'m> {
         samples: &ObjectSamples,
         meter: &mut Meter,
         scratch: Arena,
-    ) -> Result<(ObjectPlaces<'m>, Option<Stop>), OutOfMemory> {
+    ) -> Result<(ObjectPlaces<'m>, Option<Stop>), Unfinished> {
         Ok(match self {
             Self::Sites(slots) => {
                 let (counts, stop) = sites::find_on_object(samples, slots, meter, scratch)?;
@@ -165,7 +166,7 @@ impl<'m> SupporterSlots<'m> {
         cloud: &SupporterCloud,
         meter: &mut Meter,
         scratch: Arena,
-    ) -> Result<(SupporterPlaces<'m>, Option<Stop>), OutOfMemory> {
+    ) -> Result<(SupporterPlaces<'m>, Option<Stop>), Unfinished> {
         Ok(match self {
             Self::Sites(slots) => {
                 let (counts, stop) = sites::find_on_supporter(cloud, slots, meter, scratch)?;

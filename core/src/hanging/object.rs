@@ -67,38 +67,41 @@ impl<'m> Object<'m> {
         let mut arena = Arena::new(memory, Self::bytes(&Self::limits(mesh, params)))?;
         let mut meter = Meter::new(monitor);
 
-        let mass = MassProperties::of(mesh, arena.scratch())?;
-        let surface = Surface::build(mesh, mass.is_inside_out, &mut arena)?;
-        meter.check().map_err(|_| AnalysisError::Cancelled)?;
+        let mass = MassProperties::of(mesh, arena.scratch(), &meter)?;
+        let surface = Surface::build(mesh, mass.is_inside_out, &mut arena, &meter)?;
         let field = match params.voxels {
             0 => None,
-            voxels => Some(DistanceField::build(&surface, voxels, &mut arena)?),
+            voxels => Some(DistanceField::build(&surface, voxels, &mut arena, &mut meter)?),
         };
         let views = Views::of(mesh, &mut arena)?;
         let slots = ObjectSlots::new(params, &mut arena)?;
-        meter.check().map_err(|_| AnalysisError::Cancelled)?;
+        meter.check()?;
 
         let mut scratch = arena.scratch();
         let points = scratch.slice::<Point>(params.samples)?;
         let normals = scratch.slice::<Vector>(params.samples)?;
-        method::sample(mesh, params, points, normals, scratch.scratch())?;
+        method::sample(mesh, params, points, normals, scratch.scratch(), &meter)?;
         if mass.is_inside_out {
             normals.iter_mut().for_each(|normal| *normal = -*normal);
         }
-        meter.check().map_err(|_| AnalysisError::Cancelled)?;
+        meter.check()?;
 
         let sample_mean = mean_of(points);
         let centre_of_mass = params.resolve_centre_of_mass(sample_mean, mass.volume_centroid);
-        let symmetries = field.as_ref().map_or_else(Symmetries::default, |field| {
-            Symmetries::find(&mass.inertia, &centre_of_mass, field, points)
-        });
+        let symmetries = match &field {
+            Some(field) => Symmetries::find(&mass.inertia, &centre_of_mass, field, points, &meter)?,
+            None => Symmetries::default(),
+        };
         let samples = ObjectSamples { surface: &surface, points, normals, centre_of_mass, params };
         let (places, stopped) = slots.find(&samples, &mut meter, scratch)?;
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
         }
-        let corners = surface.triangles().iter().flatten();
-        let reach = corners.map(|corner| (corner - centre_of_mass).norm()).fold(0.0, f32::max);
+        let mut reach = 0.0_f32;
+        for (step, corners) in surface.triangles().iter().enumerate() {
+            meter.check_at(step)?;
+            reach = corners.iter().map(|corner| (corner - centre_of_mass).norm()).fold(reach, f32::max);
+        }
         let work = meter.work;
         Ok(Self { surface, field, places, reach, mass, centre_of_mass, symmetries, views, work, stopped })
     }

@@ -81,16 +81,16 @@ impl<'m> Supporter<'m> {
         let slots = SupporterSlots::new(params, &mut arena)?;
         let mut scratch = arena.scratch();
         let given = scratch.slice::<Vector>(points.len())?;
-        let renormalised = read_normals(cloud, given);
+        let renormalised = read_normals(cloud, given, &meter)?;
         let estimated = given.iter().filter(|normal| **normal == Vector::zeros()).count();
         let is_taken_as_it_is = method::takes_cloud_as_it_is(params);
-        let mut seen = cleaning::clean(points, given, is_taken_as_it_is, &mut tree, &mut scratch)?;
+        let mut seen = cleaning::clean(points, given, is_taken_as_it_is, &mut tree, &mut scratch, &meter)?;
         for (flag, &point) in seen.is_excluded.iter_mut().zip(tree.tree().order()) {
             *flag |= u8::from(!cloud.may_hang_on(point as usize));
         }
         let views = cloud.viewpoints();
         if is_taken_as_it_is && (params.uses_mechanics() || !views.is_empty()) {
-            spacing::measure(&tree.tree(), seen.spacings);
+            spacing::measure(&tree.tree(), seen.spacings, &meter)?;
         }
         let reversed = normals::complete(
             &tree.tree(),
@@ -99,12 +99,15 @@ impl<'m> Supporter<'m> {
             views,
             params.up(),
             scratch.scratch(),
+            &meter,
         )?;
         let normals = NormalCounts { estimated, renormalised, reversed };
-        meter.check().map_err(|_| AnalysisError::Cancelled)?;
+        meter.check_cancelled()?;
 
-        if !is_taken_as_it_is && visibility::explain(&tree.tree(), seen.normals, seen.spacings, views) {
-            seen = far_side::add(seen, views, &mut tree, &mut scratch)?;
+        if !is_taken_as_it_is
+            && visibility::explain(&tree.tree(), seen.normals, seen.spacings, views, &meter)?
+        {
+            seen = far_side::add(seen, views, &mut tree, &mut scratch, &meter)?;
         }
         let Cleaned { normals: in_tree_order, spacings, is_excluded, is_guessed, counts: cleaning } = seen;
         let guessed = is_guessed.iter().filter(|flag| **flag > 0).count();
@@ -115,6 +118,7 @@ impl<'m> Supporter<'m> {
                 (in_tree_order, spacings, is_guessed, is_excluded),
                 room,
                 scratch.scratch(),
+                &meter,
             )?,
             false => Support::bare(tree),
         };
@@ -188,9 +192,11 @@ impl<'m> Supporter<'m> {
 
 /// Writes the normals of a cloud at unit length, zero where they are not known, and returns how many were not of unit
 /// length.
-fn read_normals(cloud: &Cloud, normals: &mut [Vector]) -> usize {
+fn read_normals(cloud: &Cloud, normals: &mut [Vector], meter: &Meter) -> Result<usize, Stop> {
     let mut renormalised = 0;
-    for (normal, given) in normals.iter_mut().zip(cloud.normals().unwrap_or_default()) {
+    let given = cloud.normals().unwrap_or_default();
+    for (step, (normal, given)) in normals.iter_mut().zip(given).enumerate() {
+        meter.check_at(step)?;
         let given = Vector::from(*given);
         let length = given.norm();
         if length > NO_DIRECTION {
@@ -198,5 +204,5 @@ fn read_normals(cloud: &Cloud, normals: &mut [Vector]) -> usize {
             renormalised += usize::from((length - 1.0).abs() > UNIT_LENGTH);
         }
     }
-    renormalised
+    Ok(renormalised)
 }

@@ -5,6 +5,7 @@ use super::*;
 use crate::geometry::{Cloud, Point, Pose, Symmetry, Vector};
 use crate::mechanics::{Fate, Kind};
 use crate::memory::{Limits, OutOfMemory};
+use crate::monitor::tests::ScopedThreads;
 use crate::test_shapes::{self, Shape};
 use crate::{Candidates, CentreOfMass, Monitor, Params, Stop};
 use nalgebra::{Translation3, UnitQuaternion};
@@ -634,6 +635,32 @@ fn a_work_limit_gives_what_has_come_to_rest_so_far() {
             super::predict(object, supporter, &request, &params, &mut slots, &mut memory, &monitor).unwrap();
         assert_eq!((cancelled.stopped, cancelled.poses.len()), (Some(Stop::Cancelled), 0));
     });
+}
+
+/// Wherever a work limit ends the search: what a second thread did in vain leaves no trace.
+#[test]
+fn a_second_thread_changes_nothing() {
+    let params = Params::default();
+    let scene = Scene::key_on_peg();
+    let run = |limit: u64| {
+        let alone = format_run(&scene, &params, &Monitor::with_work_limit(limit));
+        let monitor = Monitor::with_work_limit(limit).with_threads(&ScopedThreads);
+        assert_eq!(format_run(&scene, &params, &monitor), alone, "limit {limit}");
+        alone
+    };
+    let all = run(u64::MAX);
+    let stopped = (1..8).filter(|k| run(50_000 * k) != all).count();
+    assert!(stopped > 3, "{stopped}");
+}
+
+/// All that a prediction answers, with the work that it did.
+fn format_run(scene: &Scene, params: &Params, monitor: &Monitor) -> String {
+    let mut poses = [HangingPose::default(); 20];
+    let mut answer = String::new();
+    scene.analyse(params, monitor, |object, supporter| {
+        answer = format!("{:?}", predict(object, supporter, params, &mut poses, monitor).unwrap());
+    });
+    answer
 }
 
 #[test]

@@ -11,8 +11,9 @@ use crate::params::Params;
 
 /// Number of horizontal directions in which gravity is tilted.
 pub const DIRECTIONS: usize = 8;
-/// Order in which gravity is tilted: every second direction first, because those between two that hold need no test.
-const TILT_ORDER: [usize; DIRECTIONS] = [0, 2, 4, 6, 1, 3, 5, 7];
+/// Order in which gravity is tilted: every second direction first, because those between two that hold need no test. The directions
+/// of a row are independent of each other.
+const TILT_ORDER: [[usize; DIRECTIONS / 2]; 2] = [[0, 2, 4, 6], [1, 3, 5, 7]];
 /// Maximum number of reported contacts.
 pub const MAX_CONTACTS: usize = 8;
 
@@ -111,14 +112,15 @@ pub(crate) fn lever(centre: &Point, contacts: &[Contact]) -> f32 {
 }
 
 /// Tests the stability of the rest pose `rest`, carried by `contacts`: gravity tilts in every direction, and then it jolts. A
-/// tilt below `least`, radians, ends the test: the tilts of the remaining directions and the jolt time are zero.
+/// tilt below `least`, radians, ends the test: the tilts of the remaining directions and the jolt time are zero. `sleeps` is working
+/// memory for each of two tilts at a time.
 pub(crate) fn margin(
     scene: (&Body, &Support),
     (rest, contacts): (&Pose, &[Contact]),
     down: &Vector,
     params: &Params,
     least: f32,
-    sleeps: &mut [Sleep],
+    [sleeps, other_sleeps]: [&mut [Sleep]; 2],
     meter: &mut Meter,
 ) -> Result<Margin, Stop> {
     let body = scene.0;
@@ -130,27 +132,52 @@ pub(crate) fn margin(
     let mut margin = Margin::default();
     let (mut escape, mut highest) = (f32::INFINITY, 0.0_f32);
     let (mut weakest, mut is_too_small) = (0, false);
-    for k in TILT_ORDER {
-        let beside = [k + DIRECTIONS - 1, k + 1].map(|side| margin.tilts[side % DIRECTIONS]);
-        if beside == [Margin::MOST_TILT; 2] {
-            margin.tilts[k] = Margin::MOST_TILT;
-            continue;
-        }
+    let tilt = |direction: usize, sleeps: &mut [Sleep], meter: &mut Meter| {
         let motion = Motion::new(scene, start, tilting, sleeps);
-        let TiltOutcome { held, rise, sinking, left } =
-            tilt_gravity(motion, body, down, &tilt_direction(k, down), meter)?;
-        margin.tilts[k] = held;
-        margin.tilted_sinking = margin.tilted_sinking.max(sinking);
-        highest = highest.max(rise);
-        if left {
-            escape = escape.min(rise);
+        tilt_gravity(motion, body, down, &tilt_direction(direction, down), meter)
+    };
+    'rows: for row in TILT_ORDER {
+        let is_between_held = |tilts: &[f32; DIRECTIONS], k: usize| {
+            [k + DIRECTIONS - 1, k + 1].iter().all(|side| tilts[side % DIRECTIONS] == Margin::MOST_TILT)
+        };
+        let mut to_test = heapless::Vec::<usize, { DIRECTIONS / 2 }>::new();
+        for k in row {
+            if is_between_held(&margin.tilts, k) {
+                margin.tilts[k] = Margin::MOST_TILT;
+            } else {
+                // As long as a row.
+                let _ = to_test.push(k);
+            }
         }
-        if held < margin.tilts[weakest] {
-            weakest = k;
-        }
-        is_too_small = held < least;
-        if is_too_small {
-            break;
+        for pair in to_test.chunks(2) {
+            let outcomes = match *pair {
+                [first, second] => {
+                    let (first, second) = meter.run_both(
+                        |meter| tilt(first, sleeps, meter),
+                        |meter| tilt(second, other_sleeps, meter),
+                        |outcome| outcome.held < least,
+                    )?;
+                    [Some(first), second]
+                }
+                [single] => [Some(tilt(single, sleeps, meter)?), None],
+                _ => [None, None],
+            };
+            for (&k, outcome) in pair.iter().zip(outcomes.into_iter().flatten()) {
+                let TiltOutcome { held, rise, sinking, left } = outcome;
+                margin.tilts[k] = held;
+                margin.tilted_sinking = margin.tilted_sinking.max(sinking);
+                highest = highest.max(rise);
+                if left {
+                    escape = escape.min(rise);
+                }
+                if held < margin.tilts[weakest] {
+                    weakest = k;
+                }
+                is_too_small = held < least;
+                if is_too_small {
+                    break 'rows;
+                }
+            }
         }
     }
     if margin.least_tilt() == Margin::MOST_TILT {

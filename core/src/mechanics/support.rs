@@ -8,6 +8,7 @@ use super::fit::Surroundings;
 use super::patch::Patch;
 use crate::geometry::{Aabb, Nearest, Neighbour, Point, PointTree, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::monitor::{Meter, Unfinished};
 use bytemuck::{Pod, Zeroable};
 use core::ops::Range;
 
@@ -151,7 +152,8 @@ impl<'a> Support<'a> {
         (normals, spacings, is_guessed, is_excluded): (&[Vector], &[f32], &[u8], &[u8]),
         room: Room<'a>,
         mut scratch: Arena,
-    ) -> Result<Self, OutOfMemory> {
+        meter: &Meter,
+    ) -> Result<Self, Unfinished> {
         let (points, Room { patches, representatives, groups }) = (tree.points(), room);
         let is_covered = scratch.slice::<u8>(points.len())?;
         let overall = overall_spacing(spacings);
@@ -160,6 +162,7 @@ impl<'a> Support<'a> {
             if is_covered[index] > 0 {
                 continue;
             }
+            meter.check_cancelled()?;
             // One search serves for everything where the spacing is that of the cloud, as it mostly is.
             let mut found = [Neighbour::default(); SPACING_NEIGHBOURS];
             let mut nearest = Nearest::new(&mut found);

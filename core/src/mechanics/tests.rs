@@ -30,6 +30,7 @@ struct Lab<'a> {
     body: Body<'a>,
     support: Support<'a>,
     sleeps: Vec<Sleep>,
+    other_sleeps: Vec<Sleep>,
 }
 
 impl Scene {
@@ -54,20 +55,21 @@ impl Scene {
         let needed = model_bytes(lasting + scratch.into_iter().max().unwrap());
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
-        let mass = MassProperties::of(&mesh, arena.scratch()).unwrap();
-        let surface = Surface::build(&mesh, false, &mut arena).unwrap();
-        let field = DistanceField::build(&surface, VOXELS, &mut arena).unwrap();
+        let mass = MassProperties::of(&mesh, arena.scratch(), &Meter::unwatched()).unwrap();
+        let surface = Surface::build(&mesh, false, &mut arena, &Meter::unwatched()).unwrap();
+        let field = DistanceField::build(&surface, VOXELS, &mut arena, &mut Meter::unwatched()).unwrap();
         let points: Vec<Point> = points.iter().map(|p| Point::from(*p)).collect();
-        let tree = PointTree::build(&points, &mut arena).unwrap();
+        let tree = PointTree::build(&points, &mut arena, &Meter::unwatched()).unwrap();
         let normals: Vec<Vector> = tree.order().iter().map(|&i| Vector::from(normals[i as usize])).collect();
         let room = Room::new(count, &mut arena).unwrap();
         let mut spacings = vec![0.0; count];
-        spacing::measure(&tree, &mut spacings);
+        spacing::measure(&tree, &mut spacings, &Meter::unwatched()).unwrap();
         let support = Support::fit(
             tree,
             (&normals, &spacings, &vec![0; count], &vec![0; count]),
             room,
             arena.scratch(),
+            &Meter::unwatched(),
         )
         .unwrap();
         let centre = mass.volume_centroid.expect("the test shapes are closed");
@@ -81,7 +83,8 @@ impl Scene {
             extent: surface.aabb().extents().max(),
             views: Views::default(),
         };
-        check(&mut Lab { body, support, sleeps: vec![Sleep::default(); Support::sleepers(count)] })
+        let sleeps = vec![Sleep::default(); Support::sleepers(count)];
+        check(&mut Lab { body, support, other_sleeps: sleeps.clone(), sleeps })
     }
 }
 
@@ -163,7 +166,8 @@ impl Lab<'_> {
         let contacts = self.contacts(rest);
         let (monitor, scene) = (Monitor::new(), (&self.body, &self.support));
         let (at, params, mut meter) = ((rest, &contacts[..]), Params::default(), Meter::new(&monitor));
-        margin(scene, at, &DOWN, &params, 0.0, &mut self.sleeps, &mut meter).unwrap()
+        let sleeps = [&mut self.sleeps[..], &mut self.other_sleeps];
+        margin(scene, at, &DOWN, &params, 0.0, sleeps, &mut meter).unwrap()
     }
 
     fn is_clear(&self, pose: &Pose, clearance: f32) -> bool {

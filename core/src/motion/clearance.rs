@@ -36,13 +36,14 @@ impl<'m> Clearance<'m> {
         region: &Aabb,
         free: &[Pose],
         memory: &'m mut [u8],
+        monitor: &Monitor,
     ) -> Result<Self, PlanError> {
         task.params.validate()?;
         task.request.validate()?;
         task.motion.validate()?;
         let needed = Self::bytes(&task.supporter.limits(), task.request.scene.len());
         let mut arena = Arena::new(memory, needed)?;
-        Ok(Self { space: space_of(task, region, free, &mut arena)? })
+        Ok(Self { space: space_of(task, region, free, &mut arena, &Meter::new(monitor))? })
     }
 
     /// The least distance at a pose, object to supporter coordinates, in metres; capped at [`MAX_CLEARANCE`], negative in a
@@ -65,9 +66,10 @@ pub(super) fn space_of<'a>(
     region: &Aabb,
     free: &[Pose],
     arena: &mut Arena<'a>,
+    meter: &Meter,
 ) -> Result<Space<'a>, PlanError> {
     let body = body_of(task)?;
-    let obstacles = Obstacles::build(task, region, arena)?;
+    let obstacles = Obstacles::build(task, region, arena, meter)?;
     let workspace = task.motion.workspace.map(|aabb| Workspace::new(aabb, task.object.surface().aabb()));
     let mut space = Space::of_object(Moving::held(body, task.motion.gripper), obstacles, workspace, arena)?;
     space.make_room(free);

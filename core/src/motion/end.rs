@@ -25,7 +25,10 @@ impl From<Stop> for End {
 
 impl From<PlanError> for End {
     fn from(error: PlanError) -> Self {
-        Self::Error(error)
+        match error {
+            PlanError::Cancelled => Stop::Cancelled.into(),
+            error => Self::Error(error),
+        }
     }
 }
 

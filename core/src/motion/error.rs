@@ -3,6 +3,7 @@
 use super::task::MotionError;
 use crate::hanging::{PredictError, RequestError};
 use crate::memory::OutOfMemory;
+use crate::monitor::Unfinished;
 use crate::params::ParamsError;
 use core::fmt;
 
@@ -22,6 +23,9 @@ pub enum PlanError {
         /// `None` for the object.
         hung: Option<usize>,
     },
+    /// The monitor was cancelled before the obstacles were arranged. A search that is cancelled is
+    /// [`PlanFailure::Stopped`](super::PlanFailure::Stopped), so that only [`Clearance::new`](super::Clearance::new) returns this.
+    Cancelled,
     /// A path was found, but there is no room for it.
     TooManyWaypoints {
         /// Waypoints of the path.
@@ -49,6 +53,16 @@ impl From<MotionError> for PlanError {
     }
 }
 
+impl From<Unfinished> for PlanError {
+    fn from(unfinished: Unfinished) -> Self {
+        match unfinished {
+            Unfinished::OutOfMemory(error) => Self::OutOfMemory(error),
+            // Nothing that is counted against a work limit is done where this can happen.
+            Unfinished::Stopped(_) => Self::Cancelled,
+        }
+    }
+}
+
 impl From<OutOfMemory> for PlanError {
     fn from(error: OutOfMemory) -> Self {
         Self::OutOfMemory(error)
@@ -73,6 +87,7 @@ impl fmt::Display for PlanError {
             Self::Request(error) => error.fmt(f),
             Self::Motion(error) => error.fmt(f),
             Self::OutOfMemory(error) => error.fmt(f),
+            Self::Cancelled => f.write_str("the search was cancelled"),
             Self::NoDistanceField { hung: None } => f.write_str(
                 "the object was analysed with voxels = 0: analyse it with voxels to plan its motion",
             ),

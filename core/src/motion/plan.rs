@@ -148,7 +148,7 @@ impl<'a> Planner<'_, 'a, '_> {
 
         let mut arena = arena;
         let free = [goal.pose, motion.start.unwrap_or(goal.pose)];
-        let mut space = space_of(self.task, &region, &free, &mut arena)?;
+        let mut space = space_of(self.task, &region, &free, &mut arena, self.meter)?;
         let mut room = Room::new(motion.nodes, &mut arena)?;
 
         let clearance = self.way_of_object(

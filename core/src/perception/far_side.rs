@@ -9,7 +9,8 @@
 use super::cleaning::{self, Cleaned};
 use super::visibility;
 use crate::geometry::{Neighbour, Point, PointTree, PointTreeSlots, Vector, any_perpendicular};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Unfinished};
 
 /// Largest radius of the balls, metres. Thicker things get a back that is too near, but nothing reaches around them.
 const MAX_RADIUS: f32 = 0.015;
@@ -59,7 +60,8 @@ pub(crate) fn add<'s>(
     viewpoints: &[Point],
     slots: &mut PointTreeSlots,
     arena: &mut Arena<'s>,
-) -> Result<Cleaned<'s>, OutOfMemory> {
+    meter: &Meter,
+) -> Result<Cleaned<'s>, Unfinished> {
     let count = seen.normals.len();
     let most = max_points(count);
     let (normals, spacings) = (arena.unset::<Vector>(most)?, arena.unset::<f32>(most)?);
@@ -81,12 +83,12 @@ pub(crate) fn add<'s>(
         stride: 1,
         found: 0,
     };
-    find(&slots.tree(), &seen, viewpoints, scratch, far)?;
+    find(&slots.tree(), &seen, viewpoints, scratch, far, meter)?;
     let all = count + far.count;
     for (name, &source) in names.iter_mut().zip(&sources[..all]) {
         *name = slots.tree().order()[source as usize];
     }
-    slots.fill(&points[..all]);
+    slots.fill(&points[..all], meter)?;
     let (normals, spacings) = (&mut normals[..all], &mut spacings[..all]);
     let (is_excluded, is_guessed) = (&mut is_excluded[..all], &mut is_guessed[..all]);
     for (place, &index) in slots.tree().order().iter().enumerate() {
@@ -136,13 +138,15 @@ fn find(
     viewpoints: &[Point],
     mut scratch: Arena,
     far: &mut FarSide,
-) -> Result<(), OutOfMemory> {
+    meter: &Meter,
+) -> Result<(), Unfinished> {
     let Cleaned { normals, spacings, is_excluded, .. } = seen;
     let is_edge = scratch.slice::<u8>(normals.len())?;
-    tree.for_each_k_nearest::<NEIGHBOURS>(|index, neighbours| {
+    tree.for_each_k_nearest::<NEIGHBOURS>(meter, |index, neighbours| {
         is_edge[index] = u8::from(is_at_edge(tree, normals, index, neighbours));
-    });
+    })?;
     for of in (0..normals.len()).filter(|&index| is_excluded[index] == 0) {
+        meter.check_cancelled()?;
         let (point, normal) = (tree.points()[of], normals[of]);
         let view = visibility::best_view(tree, (&point, &normal), spacings[of], viewpoints);
         let Some((way, _)) = view.filter(|(_, cosine)| *cosine > LEAST_COSINE) else { continue };
@@ -232,12 +236,15 @@ mod tests {
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let mut slots = PointTreeSlots::new(max_points(n), &mut arena).unwrap();
-        let seen = cleaning::clean(points, normals, true, &mut slots, &mut arena).unwrap();
-        cleaning::spacing::measure(&slots.tree(), seen.spacings);
-        if !visibility::explain(&slots.tree(), seen.normals, seen.spacings, &[EYE]) {
+        let seen =
+            cleaning::clean(points, normals, true, &mut slots, &mut arena, &Meter::unwatched()).unwrap();
+        cleaning::spacing::measure(&slots.tree(), seen.spacings, &Meter::unwatched()).unwrap();
+        if !visibility::explain(&slots.tree(), seen.normals, seen.spacings, &[EYE], &Meter::unwatched())
+            .unwrap()
+        {
             return Vec::new();
         }
-        let all = add(seen, &[EYE], &mut slots, &mut arena).unwrap();
+        let all = add(seen, &[EYE], &mut slots, &mut arena, &Meter::unwatched()).unwrap();
         let tree = slots.tree();
         let far = tree.points().iter().zip(all.is_guessed).filter(|(_, flag)| **flag > 0);
         far.map(|(point, _)| *point).collect()

@@ -4,7 +4,8 @@
 use super::orientation::{self, Given};
 use super::visibility;
 use crate::geometry::{Neighbour, Point, PointTree, Vector, least_eigenvector};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Unfinished};
 use nalgebra::Matrix3;
 
 /// Points that a normal is fitted to, itself included.
@@ -28,26 +29,27 @@ pub(crate) fn complete(
     viewpoints: &[Point],
     up: Vector,
     mut scratch: Arena,
-) -> Result<usize, OutOfMemory> {
+    meter: &Meter,
+) -> Result<usize, Unfinished> {
     let missing = normals.iter().filter(|n| **n == Vector::zeros()).count();
     let orient = |normals: &mut [Vector], scratch| match viewpoints {
-        [viewpoint] if visibility::explain(tree, normals, spacings, viewpoints) => {
+        [viewpoint] if visibility::explain(tree, normals, spacings, viewpoints, meter)? => {
             face(tree, normals, viewpoint);
             Ok(())
         }
-        _ => orientation::orient(tree, normals, spacings, viewpoints, up, scratch),
+        _ => orientation::orient(tree, normals, spacings, (viewpoints, up), scratch, meter),
     };
     if missing == normals.len() {
-        tree.for_each_k_nearest::<NEIGHBOURS>(|index, neighbours| {
+        tree.for_each_k_nearest::<NEIGHBOURS>(meter, |index, neighbours| {
             normals[index] = fit(tree, &tree.points()[index], neighbours);
-        });
+        })?;
         orient(normals, scratch)?;
         return Ok(0);
     }
     if missing > 0 {
-        follow_neighbours(tree, normals, up, scratch.scratch())?;
+        follow_neighbours(tree, normals, up, scratch.scratch(), meter)?;
     }
-    match orientation::judge(tree, normals) {
+    match orientation::judge(tree, normals, meter)? {
         Given::Outwards => Ok(0),
         Given::Inwards => {
             normals.iter_mut().for_each(|normal| *normal = -*normal);
@@ -93,12 +95,14 @@ fn follow_neighbours(
     normals: &mut [Vector],
     up: Vector,
     mut scratch: Arena,
-) -> Result<(), OutOfMemory> {
+    meter: &Meter,
+) -> Result<(), Unfinished> {
     let is_missing = scratch.slice::<u32>(normals.len())?;
     for (flag, normal) in is_missing.iter_mut().zip(normals.iter()) {
         *flag = u32::from(*normal == Vector::zeros());
     }
     for index in (0..normals.len()).filter(|&index| is_missing[index] == 1) {
+        meter.check_cancelled()?;
         let point = &tree.points()[index];
         let mut found = [Neighbour::default(); NEIGHBOURS];
         let neighbours = tree.k_nearest(point, &mut found);
@@ -125,7 +129,7 @@ mod tests {
 
     fn spacings(tree: &PointTree) -> Vec<f32> {
         let mut spacings = vec![0.0; tree.points().len()];
-        spacing::measure(tree, &mut spacings);
+        spacing::measure(tree, &mut spacings, &Meter::unwatched()).unwrap();
         spacings
     }
 
@@ -146,13 +150,21 @@ mod tests {
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let points: Vec<Point> = points.into_iter().map(Into::into).collect();
-        let tree = PointTree::build(&points, &mut arena).unwrap();
+        let tree = PointTree::build(&points, &mut arena, &Meter::unwatched()).unwrap();
         let truth: Vec<Vector> = tree.order().iter().map(|&i| truth[i as usize].into()).collect();
         let mut normals: Vec<Vector> =
             truth.iter().enumerate().map(|(i, &normal)| known(i, normal)).collect();
         let spacings = spacings(&tree);
-        let reversed =
-            complete(&tree, &mut normals, &spacings, viewpoints, Vector::z(), arena.scratch()).unwrap();
+        let reversed = complete(
+            &tree,
+            &mut normals,
+            &spacings,
+            viewpoints,
+            Vector::z(),
+            arena.scratch(),
+            &Meter::unwatched(),
+        )
+        .unwrap();
         check(tree.points(), &truth, &normals, reversed);
     }
 
@@ -195,10 +207,19 @@ mod tests {
         let needed = model_bytes(PointTree::bytes(n) + scratch_bytes(n));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
-        let tree = PointTree::build(&points, &mut arena).unwrap();
+        let tree = PointTree::build(&points, &mut arena, &Meter::unwatched()).unwrap();
         let mut normals = vec![Vector::zeros(); n];
         let eyes = [Point::new(0.03, 0.03, 0.5), Point::new(0.03, 0.03, -0.5)];
-        complete(&tree, &mut normals, &spacings(&tree), &eyes, Vector::z(), arena.scratch()).unwrap();
+        complete(
+            &tree,
+            &mut normals,
+            &spacings(&tree),
+            &eyes,
+            Vector::z(),
+            arena.scratch(),
+            &Meter::unwatched(),
+        )
+        .unwrap();
         // Normals at the rim lean over it.
         let is_inside = |(p, _): &(&Point, &Vector)| [p.x, p.y].iter().all(|x| (0.007..0.051).contains(x));
         for (p, n) in tree.points().iter().zip(&normals).filter(is_inside) {
@@ -259,9 +280,10 @@ mod tests {
         let needed = model_bytes(PointTree::bytes(1) + scratch_bytes(1));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
-        let tree = PointTree::build(&[Point::origin()], &mut arena).unwrap();
+        let tree = PointTree::build(&[Point::origin()], &mut arena, &Meter::unwatched()).unwrap();
         let mut normals = [Vector::zeros()];
-        complete(&tree, &mut normals, &[0.0], &[], Vector::z(), arena.scratch()).unwrap();
+        complete(&tree, &mut normals, &[0.0], &[], Vector::z(), arena.scratch(), &Meter::unwatched())
+            .unwrap();
         assert!((normals[0].norm() - 1.0).abs() < 1e-5);
     }
 }

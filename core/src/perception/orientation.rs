@@ -4,7 +4,9 @@
 use super::visibility;
 use crate::geometry::{Neighbour, Point, PointTree, Vector};
 use crate::heap::Heap;
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Stop, Unfinished};
+use crate::sort::sort;
 use bytemuck::{Pod, Zeroable};
 
 // Tolerances, set by hand on the shapes of the tests below; no value was fitted.
@@ -57,10 +59,11 @@ pub(crate) enum Given {
 }
 
 /// Judges given normals, all known and in tree order.
-pub(crate) fn judge(tree: &PointTree, normals: &[Vector]) -> Given {
+pub(crate) fn judge(tree: &PointTree, normals: &[Vector], meter: &Meter) -> Result<Given, Stop> {
     let (mut agree, mut compared) = (0.0, 0.0);
     let (mut pairs, mut inward) = (0.0, 0.0);
     for index in voters(normals.len()) {
+        meter.check_cancelled()?;
         let point = &tree.points()[index];
         let mut found = [Neighbour::default(); COMPARED];
         for neighbour in tree.k_nearest(point, &mut found).iter().filter(|n| n.distance_squared > 0.0) {
@@ -74,13 +77,13 @@ pub(crate) fn judge(tree: &PointTree, normals: &[Vector]) -> Given {
             inward += f32::from(u8::from(side > 0.0));
         }
     }
-    if agree < MIN_AGREEMENT * compared {
+    Ok(if agree < MIN_AGREEMENT * compared {
         Given::Unoriented
     } else if pairs >= MIN_VOTES && inward >= MIN_INWARD * pairs {
         Given::Inwards
     } else {
         Given::Outwards
-    }
+    })
 }
 
 /// Gives normals of arbitrary sign, in tree order, the side that is outside.
@@ -95,10 +98,10 @@ pub(crate) fn orient(
     tree: &PointTree,
     normals: &mut [Vector],
     spacings: &[f32],
-    viewpoints: &[Point],
-    up: Vector,
+    (viewpoints, up): (&[Point], Vector),
     mut scratch: Arena,
-) -> Result<(), OutOfMemory> {
+    meter: &Meter,
+) -> Result<(), Unfinished> {
     let points = tree.points();
     let from_top = scratch.slice::<u32>(points.len())?;
     let parents = scratch.slice::<u32>(points.len())?;
@@ -113,7 +116,8 @@ pub(crate) fn orient(
         *slot = index;
     }
     let height = |&index: &u32| points[index as usize].coords.dot(&up);
-    from_top.sort_unstable_by(|a, b| height(b).total_cmp(&height(a)).then(a.cmp(b)));
+    // Equal ones keep their order, so that the first comes first.
+    sort(from_top, order, meter, |a, b| height(b).total_cmp(&height(a)).is_lt())?;
     const WAITING: u32 = u32::MAX;
     const DONE: u32 = u32::MAX - 1;
     parents.fill(WAITING);
@@ -124,6 +128,7 @@ pub(crate) fn orient(
         }
         heap.offer(top as usize, 0.0);
         while let Some(index) = heap.pop() {
+            meter.check_cancelled()?;
             let parent = parents[index];
             let like = match parent {
                 WAITING => up,
@@ -151,6 +156,7 @@ pub(crate) fn orient(
         }
     }
     for index in voters(points.len()) {
+        meter.check_cancelled()?;
         let votes = &mut votes[piece_of[index] as usize];
         let is_free = |other: usize| piece_of[other] != piece_of[index];
         let at = (&points[index], &normals[index]);

@@ -1,6 +1,7 @@
 //! Which points of a cloud a viewpoint can have seen.
 
 use crate::geometry::{Point, PointTree, Vector, unit_or};
+use crate::monitor::{Meter, Stop};
 
 /// Range in which points hide others, metres: thicker than what things hang on. What is farther away hides as well, but
 /// such points say little about whether a bar was seen from both sides.
@@ -44,16 +45,24 @@ pub(crate) fn best_view(
 }
 
 /// Whether the viewpoints can have seen the points of a cloud, but for a few.
-pub(crate) fn explain(tree: &PointTree, normals: &[Vector], spacings: &[f32], viewpoints: &[Point]) -> bool {
+pub(crate) fn explain(
+    tree: &PointTree,
+    normals: &[Vector],
+    spacings: &[f32],
+    viewpoints: &[Point],
+    meter: &Meter,
+) -> Result<bool, Stop> {
     let probes = normals.len().min(PROBES);
-    let hidden = (0..probes).map(|k| k * normals.len() / probes).filter(|&index| {
+    let mut hidden = 0;
+    for index in (0..probes).map(|k| k * normals.len() / probes) {
+        meter.check_cancelled()?;
         let (point, normal) = (&tree.points()[index], &normals[index]);
-        viewpoints.iter().all(|viewpoint| {
+        hidden += usize::from(viewpoints.iter().all(|viewpoint| {
             let way = unit_or(viewpoint - point, Vector::zeros());
             is_hidden(tree, (point, normal), (spacings[index], CLEAR_ENOUGH), &way)
-        })
-    });
-    hidden.count() * MAX_HIDDEN < probes
+        }));
+    }
+    Ok(hidden * MAX_HIDDEN < probes)
 }
 
 /// Whether other points are between a point and a viewpoint in the direction `way`.

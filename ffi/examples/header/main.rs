@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 /// The source files in the order of the header.
-const SOURCES: [&str; 26] = [
+const SOURCES: [&str; 27] = [
     "version",
     "status",
     "detail",
@@ -16,6 +16,7 @@ const SOURCES: [&str; 26] = [
     "cloud",
     "limits",
     "monitor",
+    "threads",
     "object",
     "supporter",
     "kind",

@@ -42,6 +42,13 @@ static void sizes_and_alignment(void) {
   CHECK(HANGPOSE_PREDICT_BYTES(POINTS, POSES) >= predict_size);
 }
 
+static void run_one_after_the_other(void *context, hangpose_task first, void *first_argument,
+                                    hangpose_task second, void *second_argument) {
+  (void)context;
+  second(second_argument);
+  first(first_argument);
+}
+
 static void null_and_misaligned(void) {
   union {
     hangpose_mesh mesh;
@@ -66,10 +73,14 @@ static void null_and_misaligned(void) {
   hangpose_object *o;
   hangpose_supporter *s;
   hangpose_monitor monitor;
+  hangpose_threads two_threads = {.struct_size = sizeof two_threads, .join = run_one_after_the_other};
   for (int i = 0; i < 2; ++i) {
     REFUSED(
         hangpose_params_init(bad[i], sizeof params, HANGPOSE_PROFILE_DEFAULT, HANGPOSE_ABI_VERSION, &detail));
     REFUSED(hangpose_monitor_init(bad[i], sizeof monitor, 0, &detail));
+    hangpose_monitor_init(&monitor, sizeof monitor, HANGPOSE_NO_WORK_LIMIT, NULL);
+    REFUSED(hangpose_monitor_use_threads(bad[i], &two_threads, &detail));
+    REFUSED(hangpose_monitor_use_threads(&monitor, bad[i], &detail));
     REFUSED(hangpose_limits_of(bad[i], &mesh, &cloud, &limits, &detail));
     REFUSED(hangpose_limits_of(&params, &mesh, &cloud, bad[i], &detail));
     CHECK(hangpose_object_bytes(bad[i]) == 0 && hangpose_supporter_bytes(bad[i]) == 0);

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <cstring>
 #include <hangpose.hpp>
+#include <hangpose/second_thread.hpp>
 #include <utility>
 #include <vector>
 #if __cplusplus >= 202002L
@@ -194,6 +195,32 @@ int main() {
   CHECK(hangpose::object::create({vertices, triangles}, params, &monitor));
   auto stopped = hangpose::predict(moved, *peg, params, poses, &monitor);
   CHECK(stopped && stopped->status == HANGPOSE_WORK_LIMIT);
+
+  // A second thread, alone and shared: the same bytes.
+  const auto copy_of_found = hangpose::predict(moved, *peg, params, poses);
+  CHECK(copy_of_found && copy_of_found->status == HANGPOSE_OK);
+  hangpose::second_thread helper;
+  auto predict_with_helper = [&] {
+    hangpose::monitor threaded;
+    bool is_same = static_cast<bool>(threaded.use(helper));
+    hangpose::pose theirs[3];
+    const auto ring_again = hangpose::object::create({vertices, triangles}, params, &threaded);
+    const auto with_two = hangpose::predict(*ring_again, *peg, params, theirs, &threaded);
+    is_same = is_same && with_two && with_two->poses.size() == copy_of_found->poses.size();
+    is_same = is_same && with_two->distance_queries == copy_of_found->distance_queries;
+    for (std::size_t i = 0; is_same && i < with_two->poses.size(); ++i)
+      is_same = std::memcmp(&theirs[i], &poses[i], sizeof theirs[i]) == 0;
+    return is_same;
+  };
+  CHECK(predict_with_helper());
+  bool is_same_beside = false;
+  std::thread beside_it([&] { is_same_beside = predict_with_helper(); });
+  CHECK(predict_with_helper());
+  beside_it.join();
+  CHECK(is_same_beside);
+  hangpose_threads no_function{sizeof(hangpose_threads), nullptr, nullptr};
+  const auto no_join = monitor.use(no_function);
+  CHECK(!no_join && std::strcmp(no_join.error().field(), "threads.join") == 0);
 
   std::vector<hangpose::vec3> drawn(500), drawn_normals(500);
   CHECK(hangpose::sample({vertices, triangles}, drawn, drawn_normals));

@@ -84,7 +84,7 @@ impl Problem<'_> {
         let region = Aabb { min: low, max: high };
         let scene = self.task.request.scene.len();
         let mut memory = vec![0; Clearance::bytes(&self.task.supporter.limits(), scene)];
-        let mut clearance = Clearance::new(&self.task, &region, &free, &mut memory).ok()?;
+        let mut clearance = Clearance::new(&self.task, &region, &free, &mut memory, &Monitor::new()).ok()?;
         // As the planner: half of what the ends have.
         let required = free.map(|pose| KEPT * clearance.at(&pose)).into_iter().fold(FREE, f32::min);
         let bounds = [low.into(), high.into()];

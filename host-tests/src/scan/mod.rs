@@ -19,7 +19,7 @@ use hangpose::perception::depth::DepthImage;
 use std::path::PathBuf;
 
 /// The images as a scan from files has them.
-fn frames(images: &[DepthImage]) -> Vec<ScanFrame> {
+pub fn frames(images: &[DepthImage]) -> Vec<ScanFrame> {
     let frame = |image: &DepthImage| ScanFrame {
         depth: DepthFile {
             path: PathBuf::new(),

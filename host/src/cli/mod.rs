@@ -251,7 +251,7 @@ struct ResultArguments {
     json: Option<PathBuf>,
     #[command(flatten)]
     shown: ShownArguments,
-    /// 1 analyses object and supporter one after the other, 2 or more in parallel.
+    /// 2 or more run what is independent on two threads: both analyses, and parts of each step. The poses are the same.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     threads: u32,
 }

@@ -21,7 +21,7 @@ use hangpose::hanging::{
 use hangpose::mechanics::Unseen;
 use hangpose::memory::Limits;
 use hangpose::motion::{Task, Waypoint, predict_reachable, reachable_bytes};
-use hangpose::{Monitor, Params};
+use hangpose::{Monitor, Params, ScopedThreads};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
@@ -93,7 +93,11 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
     let prediction_memory = &mut vec![0; memory_bytes.prediction];
     let object_memory = &mut vec![0; memory_bytes.object];
     let supporter_memory = &mut vec![0; memory_bytes.supporter];
-    let monitors = [Monitor::new(), Monitor::new(), Monitor::new()];
+    let monitor = || match result.threads {
+        ..=1 => Monitor::new(),
+        2.. => Monitor::new().with_threads(&ScopedThreads),
+    };
+    let monitors = [monitor(), monitor(), monitor()];
     let monitors = monitors.each_ref();
     let (object, supporter, found) = progress::show_while(&monitors, || -> Result<_> {
         let analyse_object = || timed(move || Object::analyze(mesh, params, object_memory, monitors[0]));

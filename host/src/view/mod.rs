@@ -49,5 +49,5 @@ pub struct Scene<'a> {
     /// The gripper that holds the object on its path.
     pub gripper: Option<Gripper<'a>>,
     /// Stops the simulations that the page shows, if they shall end early.
-    pub monitor: &'a Monitor,
+    pub monitor: &'a Monitor<'a>,
 }

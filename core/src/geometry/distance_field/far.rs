@@ -5,7 +5,8 @@ use super::frame::Frame;
 use super::layout::{Layout, MOST_BLOCKS_ALONG};
 use super::nearest::{NONE, Nearest};
 use super::{Entry, understated};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Stop, Unfinished};
 
 /// Fills in the distance of every block without a brick.
 ///
@@ -65,11 +66,11 @@ fn to_brick(entry: u32) -> f32 {
 }
 
 impl Far<'_> {
-    pub(super) fn fill(mut self, mut scratch: Arena) -> Result<(), OutOfMemory> {
-        self.measure_to_bricks();
+    pub(super) fn fill(mut self, mut scratch: Arena, meter: &Meter) -> Result<(), Unfinished> {
+        self.measure_to_bricks(meter)?;
         let squares = scratch.unset::<f32>(self.grid.len())?;
         let triangles = scratch.unset::<u32>(self.grid.len())?;
-        self.ask_neighbours(squares, triangles, scratch.unset(self.grid.len())?);
+        self.ask_neighbours(squares, triangles, scratch.unset(self.grid.len())?, meter)?;
         for ((entry, &sign), &to_triangle) in self.grid.iter_mut().zip(self.signs).zip(squares.iter()) {
             if let Entry::Far(_) = Entry::unpack(*entry) {
                 let to_brick = libm::sqrtf(to_brick(*entry)) * BLOCK as f32;
@@ -82,7 +83,7 @@ impl Far<'_> {
     }
 
     /// Writes the square of the distance to the closest brick, in blocks, to the entry of every block without one.
-    fn measure_to_bricks(&mut self) {
+    fn measure_to_bricks(&mut self, meter: &Meter) -> Result<(), Stop> {
         for entry in self.grid.iter_mut() {
             if let Entry::Far(_) = Entry::unpack(*entry) {
                 *entry = f32::INFINITY.to_bits();
@@ -95,6 +96,7 @@ impl Far<'_> {
             let line = &mut line[..count];
             for layer in (0..self.grid.len()).step_by((step * count).max(1)) {
                 for first in layer..layer + step {
+                    meter.check_cancelled()?;
                     let blocks = || (first..).step_by(step).take(count);
                     for (square, block) in line.iter_mut().zip(blocks()) {
                         *square = to_brick(self.grid[block]);
@@ -108,11 +110,18 @@ impl Far<'_> {
             }
             step *= count;
         }
+        Ok(())
     }
 
     /// Finds a near triangle for the centre of every block that is close to a brick, and the square of the distance to it, in voxels;
     /// infinite for others. `changed` is working memory, as is `triangles`.
-    fn ask_neighbours(&self, squares: &mut [f32], triangles: &mut [u32], changed: &mut [u8]) {
+    fn ask_neighbours(
+        &self,
+        squares: &mut [f32],
+        triangles: &mut [u32],
+        changed: &mut [u8],
+        meter: &Meter,
+    ) -> Result<(), Stop> {
         squares.fill(f32::INFINITY);
         triangles.fill(NONE);
         // The round in which a block got its triangle, counted from one.
@@ -120,6 +129,7 @@ impl Far<'_> {
         for round in 1..=ROUNDS {
             let mut has_changed = false;
             for k in 0..self.grid.len() {
+                meter.check_at(k)?;
                 // There and back, so that it spreads far at once.
                 let block = if round % 2 == 1 { k } else { self.grid.len() - 1 - k };
                 let to_brick = to_brick(self.grid[block]);
@@ -158,5 +168,6 @@ impl Far<'_> {
                 break;
             }
         }
+        Ok(())
     }
 }

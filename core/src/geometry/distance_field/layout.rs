@@ -4,6 +4,7 @@ use super::brick::{BLOCK, BRICK_NODES};
 use super::{BAND, Entry, raster};
 use crate::geometry::{Aabb, Point, Surface, Vector};
 use crate::memory::larger;
+use crate::monitor::{Meter, Stop};
 use core::hint::black_box;
 
 /// The most bricks of a field of `voxels` nodes. One is enough for any mesh.
@@ -71,7 +72,12 @@ impl Layout {
 
     /// The finest layout whose bricks are few enough, and how many those are. Writes the entries of the bricks to `grid`;
     /// all others are zero.
-    pub(super) fn choose(surface: &Surface, voxels: usize, grid: &mut [u32]) -> (Self, usize) {
+    pub(super) fn choose(
+        surface: &Surface,
+        voxels: usize,
+        grid: &mut [u32],
+        meter: &Meter,
+    ) -> Result<(Self, usize), Stop> {
         let (max_bricks, max_blocks) = (max_bricks(voxels), max_blocks(voxels));
         let aabb = surface.aabb();
         let largest = aabb.extents().max();
@@ -88,8 +94,10 @@ impl Layout {
         let mut best = None::<(Self, usize)>;
         let mut too_fine = 0.0_f32;
         for round in 0.. {
-            let found =
-                Self::new(&aabb, voxel, max_blocks).map(|layout| (layout, layout.mark(surface, grid)));
+            let found = match Self::new(&aabb, voxel, max_blocks) {
+                Some(layout) => Some((layout, layout.mark(surface, grid, meter)?)),
+                None => None,
+            };
             let fill = found.map_or(1.2, |(_, bricks)| bricks as f32 / max_bricks as f32);
             let next = (voxel * libm::sqrtf(fill.max(0.1)) * 1.02).max(finest);
             if fill > 1.0 {
@@ -115,17 +123,18 @@ impl Layout {
             0,
         ));
         if too_fine == voxel || layout.voxel != voxel {
-            layout.mark(surface, grid);
+            layout.mark(surface, grid, meter)?;
         }
-        (layout, bricks)
+        Ok((layout, bricks))
     }
 
     /// Gives every block that comes close to the mesh a brick, numbered in the order of the blocks, and returns how many
     /// they are.
-    fn mark(&self, surface: &Surface, grid: &mut [u32]) -> usize {
+    fn mark(&self, surface: &Surface, grid: &mut [u32], meter: &Meter) -> Result<usize, Stop> {
         let grid = &mut grid[..self.block_count()];
         grid.fill(0);
-        for corners in surface.triangles() {
+        for (step, corners) in surface.triangles().iter().enumerate() {
+            meter.check_at(step)?;
             raster::visit_blocks(&self.local(corners), REACH, &self.blocks, |place| {
                 grid[self.index(place)] = Entry::BRICK;
             });
@@ -137,7 +146,7 @@ impl Layout {
                 bricks += 1;
             }
         }
-        bricks
+        Ok(bricks)
     }
 
     pub(super) fn block_count(&self) -> usize {

@@ -19,7 +19,8 @@ mod sign;
 mod tests;
 
 use crate::geometry::{Aabb, Point, Surface, Vector, unit_or};
-use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
+use crate::memory::{Arena, array_bytes, larger};
+use crate::monitor::{Meter, Unfinished};
 use brick::{BLOCK, BRICK_NODES};
 use core::hint::black_box;
 use far::Far;
@@ -111,24 +112,27 @@ impl<'m> DistanceField<'m> {
         surface: &Surface,
         voxels: usize,
         arena: &mut Arena<'m>,
-    ) -> Result<Self, OutOfMemory> {
+        meter: &mut Meter,
+    ) -> Result<Self, Unfinished> {
         let grid = arena.slice::<u32>(layout::max_blocks(voxels))?;
-        let (layout, bricks) = Layout::choose(surface, voxels, grid);
+        let (layout, bricks) = Layout::choose(surface, voxels, grid, meter)?;
         let (grid, _) = grid.split_at_mut(layout.block_count());
         let nodes = arena.slice::<i16>(bricks * BRICK_NODES)?;
 
         let mut scratch = arena.scratch();
         let frames = scratch.slice::<Frame>(surface.triangles().len())?;
-        for (frame, corners) in frames.iter_mut().zip(surface.triangles()) {
+        for (step, (frame, corners)) in frames.iter_mut().zip(surface.triangles()).enumerate() {
+            meter.check_at(step)?;
             *frame = Frame::of(&layout.local(corners));
         }
         let (mut nearest, places) = nearest::Nearest::new(grid, bricks, &mut scratch)?;
-        nearest.seed(surface, &layout, grid, frames);
-        nearest.spread(surface, &layout, grid, places, frames);
+        nearest.seed(surface, &layout, grid, places, frames, meter)?;
+        nearest.spread(surface, &layout, grid, places, frames, meter)?;
 
         let far_signs = scratch.slice::<u8>(grid.len())?;
-        sign::find(surface, &layout, grid, places, &nearest, frames, nodes, far_signs, scratch.scratch())?;
-        Far { layout: &layout, grid, nearest: &nearest, frames, signs: far_signs }.fill(scratch)?;
+        let mesh = sign::Measured { surface, layout: &layout, grid, places, nearest: &nearest, frames };
+        sign::find(mesh, nodes, far_signs, scratch.scratch(), meter)?;
+        Far { layout: &layout, grid, nearest: &nearest, frames, signs: far_signs }.fill(scratch, meter)?;
         let Aabb { min, max } = surface.aabb();
         let aabb = Aabb { min: layout.in_voxels(&min).into(), max: layout.in_voxels(&max).into() };
         Ok(Self { layout, aabb, grid, nodes })

@@ -13,7 +13,8 @@ use super::layout::Layout;
 use super::{Entry, raster};
 use crate::geometry::{Surface, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
-use core::ops::Range;
+use crate::monitor::{Meter, Stop};
+use core::ops::{Range, RangeInclusive};
 
 /// Nodes whose distances are computed at once.
 const LANES: usize = 4;
@@ -24,6 +25,8 @@ const REPAIRS: usize = 16;
 /// Distance up to which nodes have their exact nearest triangle before the spreading, voxels. More than one: distances of
 /// other nodes may be overstated, but never so that the mesh seems not to pass between two neighbours when it does.
 const EXACT: f32 = 1.01;
+/// Triangles between two looks at the monitor. A budget: they take less than 0.1 ms unless they are large.
+const TRIANGLES_A_CHECK: usize = 64;
 
 /// The nearest triangle of every node of every brick.
 pub(super) struct Nearest<'s> {
@@ -66,39 +69,36 @@ impl<'s> Nearest<'s> {
         Ok((Self { distances, triangles, known, fresh }, places))
     }
 
-    /// Asks every triangle for the nodes within [`EXACT`] of it.
-    pub(super) fn seed(&mut self, surface: &Surface, layout: &Layout, grid: &[u32], frames: &[Frame]) {
-        for (triangle, (corners, frame)) in surface.triangles().iter().zip(frames).enumerate() {
-            let corners = layout.local(corners);
-            let min = corners[0].inf(&corners[1]).inf(&corners[2]).add_scalar(-EXACT);
-            let max = corners[0].sup(&corners[1]).sup(&corners[2]).add_scalar(EXACT);
-            raster::visit_blocks(&corners, EXACT, &layout.blocks, |place| {
-                let Entry::Brick(brick) = Entry::unpack(grid[layout.index(place)]) else { return };
-                let first = place.map(|i| (i * BLOCK) as f32);
-                // The rows of nodes in the box around the triangle, and all of each.
-                let low = [1, 2].map(|i| ((min[i] - first[i]).max(0.0) as usize).min(SIDE - 1));
-                let high = [1, 2].map(|i| ((max[i] - first[i]).max(0.0) as usize).min(SIDE - 1));
-                let (distances, triangles) = (&mut self.distances[brick], &mut self.triangles[brick]);
-                for z in low[1]..=high[1] {
-                    let from = SIDE * (low[0] + SIDE * z);
-                    let count = (SIDE * (high[0] - low[0] + 1)).next_multiple_of(LANES);
-                    // The middle of the run, and how far its ends are from it.
-                    let half = 0.5 * (high[0] - low[0]) as f32;
-                    let middle =
-                        Vector::new(first[0] + 2.0, first[1] + low[0] as f32 + half, first[2] + z as f32);
-                    if frame.height(&middle).abs() > EXACT + frame.slope(2.0, half) {
-                        continue;
-                    }
-                    ask(frame, triangle as u32, first, from..from + count, distances, triangles);
-                }
-            });
-        }
+    /// Asks every triangle for the nodes within [`EXACT`] of it; a second thread takes half of the bricks.
+    pub(super) fn seed(
+        &mut self,
+        surface: &Surface,
+        layout: &Layout,
+        grid: &[u32],
+        places: &[u32],
+        frames: &[Frame],
+        meter: &mut Meter,
+    ) -> Result<(), Stop> {
+        let middle = if meter.has_threads() { places.len() / 2 } else { places.len() };
+        // Bricks are numbered by layers of blocks along z.
+        let border = places.get(middle).map_or(u32::MAX, |&block| layout.place(block as usize)[2]);
+        let (distances, triangles) =
+            (self.distances.split_at_mut(middle), self.triangles.split_at_mut(middle));
+        let all = Seeds { surface, layout, grid, frames };
+        let mut front = Part { bricks: 0..middle, layers: 0..=border, nearest: (distances.0, triangles.0) };
+        let mut back = Part {
+            bricks: middle..places.len(),
+            layers: border..=u32::MAX,
+            nearest: (distances.1, triangles.1),
+        };
+        meter.run_both(|meter| all.find(&mut front, meter), |meter| all.find(&mut back, meter), |_| false)?;
         for (known, distances) in self.known.iter_mut().zip(self.distances.iter()) {
             *known = compare(distances, 0, |distance, _| distance <= EXACT * EXACT);
         }
         for (to, from) in self.fresh.iter_mut().zip(self.known.iter()) {
             *to = *from;
         }
+        Ok(())
     }
 
     /// Finds a near triangle for all other nodes, and takes the roots of the distances.
@@ -109,11 +109,13 @@ impl<'s> Nearest<'s> {
         grid: &[u32],
         places: &[u32],
         frames: &[Frame],
-    ) {
+        meter: &Meter,
+    ) -> Result<(), Stop> {
         loop {
-            self.share_all(layout, grid, places);
+            self.share_all(layout, grid, places, meter)?;
             let mut changed = false;
             for (brick, &block) in places.iter().enumerate() {
+                meter.check_cancelled()?;
                 let known = self.known[brick];
                 let fresh = dilate(known) & !known & ALL;
                 self.fresh[brick] = fresh;
@@ -140,6 +142,7 @@ impl<'s> Nearest<'s> {
         for _ in 0..REPAIRS {
             let mut changed = false;
             for (brick, &block) in places.iter().enumerate() {
+                meter.check_cancelled()?;
                 if self.fresh[brick] == 0 {
                     continue;
                 }
@@ -160,11 +163,12 @@ impl<'s> Nearest<'s> {
             if !changed {
                 break;
             }
-            self.share_all(layout, grid, places);
+            self.share_all(layout, grid, places, meter)?;
         }
         // A brick that no other leads to: far from the mesh, as only those are that the corners of a triangle were wrongly
         // given.
         for (distances, &block) in self.distances.iter_mut().zip(places) {
+            meter.check_cancelled()?;
             for (node, distance) in distances[..BRICK_NODES].iter_mut().enumerate() {
                 if distance.is_infinite() {
                     let local = layout.first_node(block as usize)
@@ -174,6 +178,7 @@ impl<'s> Nearest<'s> {
                 }
             }
         }
+        Ok(())
     }
 
     /// The nodes that are further from their triangle than from a neighbour and on to its triangle.
@@ -189,15 +194,23 @@ impl<'s> Nearest<'s> {
     }
 
     /// Nodes that two bricks have in common take the better of both answers.
-    fn share_all(&mut self, layout: &Layout, grid: &[u32], places: &[u32]) {
+    fn share_all(
+        &mut self,
+        layout: &Layout,
+        grid: &[u32],
+        places: &[u32],
+        meter: &Meter,
+    ) -> Result<(), Stop> {
         for axis in 0..3 {
             for (brick, &block) in places.iter().enumerate() {
+                meter.check_at(brick)?;
                 let Some(next) = layout.beside(layout.place(block as usize), axis, true) else { continue };
                 if let Entry::Brick(next) = Entry::unpack(grid[next]) {
                     self.share(brick, next, axis);
                 }
             }
         }
+        Ok(())
     }
 
     /// The distances of the known nodes of a brick; infinite for all others.
@@ -268,6 +281,71 @@ impl<'s> Nearest<'s> {
         }
         self.known[brick] |= face << ACROSS[axis];
         self.known[next] |= face;
+    }
+}
+
+/// What nodes close to the mesh are seeded from.
+struct Seeds<'a> {
+    surface: &'a Surface<'a>,
+    layout: &'a Layout,
+    grid: &'a [u32],
+    frames: &'a [Frame],
+}
+
+/// Some of the bricks.
+struct Part<'a> {
+    bricks: Range<usize>,
+    /// Layers of blocks along z that hold them.
+    layers: RangeInclusive<u32>,
+    /// Square distances and triangles of their nodes.
+    nearest: (&'a mut [[f32; PADDED]], &'a mut [[u32; PADDED]]),
+}
+
+impl Seeds<'_> {
+    /// Asks every triangle for the nodes of a part of the bricks.
+    fn find(&self, part: &mut Part, meter: &Meter) -> Result<(), Stop> {
+        let Self { surface, layout, grid, frames } = *self;
+        let Part { bricks, layers, nearest: (distances, triangles) } = part;
+        if distances.is_empty() {
+            return Ok(());
+        }
+        let layer = |z: f32| (z.max(0.0) as u32 / BLOCK).min(layout.blocks[2] - 1);
+        for (triangle, (corners, frame)) in surface.triangles().iter().zip(frames).enumerate() {
+            if triangle % TRIANGLES_A_CHECK == 0 {
+                meter.check_cancelled()?;
+            }
+            let corners = layout.local(corners);
+            let min = corners[0].inf(&corners[1]).inf(&corners[2]).add_scalar(-EXACT);
+            let max = corners[0].sup(&corners[1]).sup(&corners[2]).add_scalar(EXACT);
+            if layer(max.z) < *layers.start() || layer(min.z) > *layers.end() {
+                continue;
+            }
+            raster::visit_blocks(&corners, EXACT, &layout.blocks, |place| {
+                let Entry::Brick(brick) = Entry::unpack(grid[layout.index(place)]) else { return };
+                if !bricks.contains(&brick) {
+                    return;
+                }
+                let brick = brick - bricks.start;
+                let first = place.map(|i| (i * BLOCK) as f32);
+                // The rows of nodes in the box around the triangle, and all of each.
+                let low = [1, 2].map(|i| ((min[i] - first[i]).max(0.0) as usize).min(SIDE - 1));
+                let high = [1, 2].map(|i| ((max[i] - first[i]).max(0.0) as usize).min(SIDE - 1));
+                let (distances, triangles) = (&mut distances[brick], &mut triangles[brick]);
+                for z in low[1]..=high[1] {
+                    let from = SIDE * (low[0] + SIDE * z);
+                    let count = (SIDE * (high[0] - low[0] + 1)).next_multiple_of(LANES);
+                    // The middle of the run, and how far its ends are from it.
+                    let half = 0.5 * (high[0] - low[0]) as f32;
+                    let middle =
+                        Vector::new(first[0] + 2.0, first[1] + low[0] as f32 + half, first[2] + z as f32);
+                    if frame.height(&middle).abs() > EXACT + frame.slope(2.0, half) {
+                        continue;
+                    }
+                    ask(frame, triangle as u32, first, from..from + count, distances, triangles);
+                }
+            });
+        }
+        Ok(())
     }
 }
 

@@ -13,7 +13,8 @@ use super::layout::Layout;
 use super::nearest::Nearest;
 use super::{Entry, QUANTUM};
 use crate::geometry::{Point, Surface, Vector};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Stop, Unfinished};
 
 /// Side of a block that has not been decided yet.
 const UNKNOWN: u8 = 0;
@@ -40,18 +41,13 @@ pub(super) const fn scratch_bytes(bricks: usize, blocks: usize) -> usize {
 }
 
 /// Finds all sides: writes the signed distances of the bricks' nodes to `nodes` and the sides of the other blocks to `far`.
-#[allow(clippy::too_many_arguments)]
 pub(super) fn find(
-    surface: &Surface,
-    layout: &Layout,
-    grid: &[u32],
-    places: &[u32],
-    nearest: &Nearest,
-    frames: &[Frame],
+    Measured { surface, layout, grid, places, nearest, frames }: Measured,
     nodes: &mut [i16],
     far: &mut [u8],
     mut scratch: Arena,
-) -> Result<(), OutOfMemory> {
+    meter: &Meter,
+) -> Result<(), Unfinished> {
     let bricks = places.len();
     let mut sides = Sides {
         surface,
@@ -67,17 +63,29 @@ pub(super) fn find(
         stack: scratch.slice(grid.len())?,
         height: 0,
         is_simple: true,
+        meter,
     };
-    sides.link();
-    if is_closed(surface) {
-        sides.fill_regions();
+    sides.link()?;
+    if is_closed(surface, meter)? {
+        sides.fill_regions()?;
     } else {
         sides.is_simple = false;
-        sides.ask_bricks();
-        sides.ask_blocks();
+        sides.ask_bricks()?;
+        sides.ask_blocks()?;
     }
-    sides.finish(nodes);
+    sides.finish(nodes)?;
     Ok(())
+}
+
+/// A mesh whose distances are known, but not their signs.
+pub(super) struct Measured<'a> {
+    pub(super) surface: &'a Surface<'a>,
+    pub(super) layout: &'a Layout,
+    pub(super) grid: &'a [u32],
+    /// The block of each brick.
+    pub(super) places: &'a [u32],
+    pub(super) nearest: &'a Nearest<'a>,
+    pub(super) frames: &'a [Frame],
 }
 
 struct Sides<'a, 's> {
@@ -100,6 +108,7 @@ struct Sides<'a, 's> {
     height: usize,
     /// Whether every winding number is 0 or 1, so that every triangle parts inside and outside.
     is_simple: bool,
+    meter: &'a Meter<'a>,
 }
 
 /// All nodes that hang together with `nodes`.
@@ -116,13 +125,15 @@ fn flood(mut nodes: Nodes, links: &[Nodes; 3]) -> Nodes {
 }
 
 impl Sides<'_, '_> {
-    fn link(&mut self) {
+    fn link(&mut self) -> Result<(), Stop> {
         for (links, distances) in self.links.iter_mut().zip(self.nearest.distances.iter()) {
+            self.meter.check_cancelled()?;
             for axis in 0..3 {
                 let linked = compare(distances, STEP[axis], |a, b| a + b > 1.001);
                 links[axis] = linked & !HIGH[axis];
             }
         }
+        Ok(())
     }
 
     /// Where a node is, in object coordinates.
@@ -146,8 +157,9 @@ impl Sides<'_, '_> {
     }
 
     /// Closed meshes: spreads the outside from the border of the grid, and one winding number through each other region.
-    fn fill_regions(&mut self) {
+    fn fill_regions(&mut self) -> Result<(), Stop> {
         for block in 0..self.grid.len() {
+            self.meter.check_at(block)?;
             let place = self.layout.place(block);
             for axis in 0..3 {
                 for forward in [false, true] {
@@ -157,9 +169,10 @@ impl Sides<'_, '_> {
                 }
             }
         }
-        self.spread(OUTSIDE);
+        self.spread(OUTSIDE)?;
         for brick in 0..self.places.len() {
             loop {
+                self.meter.check_cancelled()?;
                 let unknown = self.unknown(brick);
                 let Some((node, distance)) = self.furthest(brick, unknown) else { break };
                 if distance <= CLEAR {
@@ -169,9 +182,10 @@ impl Sides<'_, '_> {
                 self.is_simple &= (winding - 0.5).abs() < 1.0;
                 let side = if winding > 0.5 { INSIDE } else { OUTSIDE };
                 self.enter(self.places[brick] as usize, 1 << node, side);
-                self.spread(side);
+                self.spread(side)?;
             }
         }
+        Ok(())
     }
 
     /// Notes that `nodes` of a block are on `side`; what hangs together with them follows by [`spread`](Self::spread).
@@ -196,8 +210,9 @@ impl Sides<'_, '_> {
         self.height += 1;
     }
 
-    fn spread(&mut self, side: u8) {
+    fn spread(&mut self, side: u8) -> Result<(), Stop> {
         while self.height > 0 {
+            self.meter.check_cancelled()?;
             self.height -= 1;
             let block = self.stack[self.height] as usize;
             let mut reached = ALL;
@@ -222,13 +237,15 @@ impl Sides<'_, '_> {
                 }
             }
         }
+        Ok(())
     }
 
     /// Open meshes: computes one winding number in each part of a brick, and more where that one is not certain.
-    fn ask_bricks(&mut self) {
+    fn ask_bricks(&mut self) -> Result<(), Stop> {
         let aabb = self.surface.aabb();
         for brick in 0..self.places.len() {
             while let Some((node, distance)) = self.furthest(brick, self.unknown(brick)) {
+                self.meter.check_cancelled()?;
                 if distance <= CLEAR {
                     break;
                 }
@@ -256,15 +273,17 @@ impl Sides<'_, '_> {
                 self.sides[1][brick] &= !out;
             }
         }
+        Ok(())
     }
 
     /// Open meshes: computes winding numbers for the blocks without bricks, one for two by two by two blocks where it is certain.
-    fn ask_blocks(&mut self) {
+    fn ask_blocks(&mut self) -> Result<(), Stop> {
         let aabb = self.surface.aabb();
         let blocks = self.layout.blocks;
         for z in (0..blocks[2]).step_by(2) {
             for y in (0..blocks[1]).step_by(2) {
                 for x in (0..blocks[0]).step_by(2) {
+                    self.meter.check_cancelled()?;
                     let all = (0..8).map(|i| [x + (i & 1), y + (i >> 1 & 1), z + (i >> 2)]);
                     let in_grid = all.filter(|place| (0..3).all(|axis| place[axis] < blocks[axis]));
                     let mut winding = None::<f32>;
@@ -286,11 +305,13 @@ impl Sides<'_, '_> {
                 }
             }
         }
+        Ok(())
     }
 
     /// Decides for the remaining nodes and writes the signed distances.
-    fn finish(&mut self, nodes: &mut [i16]) {
+    fn finish(&mut self, nodes: &mut [i16]) -> Result<(), Stop> {
         for brick in 0..self.places.len() {
+            self.meter.check_cancelled()?;
             let mut inside = self.sides[1][brick];
             let mut verdicts = [None; 2];
             for node in each(self.unknown(brick)) {
@@ -303,6 +324,7 @@ impl Sides<'_, '_> {
                 *to = if inside >> node & 1 == 0 { size } else { -size };
             }
         }
+        Ok(())
     }
 
     /// Whether a node very close to the mesh is inside. `verdicts` are those on nodes of the brick that were behind and in
@@ -354,7 +376,7 @@ fn octant_nodes(octant: usize) -> Nodes {
 /// The sum over all edges of a number for each, whose sign an edge and its reverse differ in. That the sum is zero by
 /// chance is as likely as to guess 64 bits. Corners count as the same if they are within a 65536th of the box, far less
 /// than a voxel: a crack as narrow does not let anything through.
-pub(super) fn is_closed(surface: &Surface) -> bool {
+fn is_closed(surface: &Surface, meter: &Meter) -> Result<bool, Stop> {
     let scramble = |mut x: u64| {
         x = (x ^ x >> 32).wrapping_mul(0x9E6C_63D0_676A_9A99);
         x = (x ^ x >> 29).wrapping_mul(0xD3B5_4F1C_8A2E_7B45);
@@ -369,11 +391,13 @@ pub(super) fn is_closed(surface: &Surface) -> bool {
     let edge = |a: u64, b: u64| {
         scramble(a.wrapping_add(b.rotate_left(21))).wrapping_sub(scramble(b.wrapping_add(a.rotate_left(21))))
     };
-    let sum = surface.triangles().iter().fold(0_u64, |sum, corners| {
+    let mut sum = 0_u64;
+    for (step, corners) in surface.triangles().iter().enumerate() {
+        meter.check_at(step)?;
         let [a, b, c] = [corner(&corners[0]), corner(&corners[1]), corner(&corners[2])];
-        sum.wrapping_add(edge(a, b)).wrapping_add(edge(b, c)).wrapping_add(edge(c, a))
-    });
-    sum == 0
+        sum = sum.wrapping_add(edge(a, b)).wrapping_add(edge(b, c)).wrapping_add(edge(c, a));
+    }
+    Ok(sum == 0)
 }
 
 #[cfg(test)]
@@ -389,7 +413,8 @@ mod tests {
             let count = mesh.triangles().len();
             let mut memory = vec![0; model_bytes(Surface::bytes(count) + Surface::scratch_bytes(count))];
             let mut arena = Arena::new(&mut memory, 0).unwrap();
-            is_closed(&Surface::build(&mesh, false, &mut arena).unwrap())
+            let meter = Meter::unwatched();
+            is_closed(&Surface::build(&mesh, false, &mut arena, &meter).unwrap(), &meter).unwrap()
         };
         // Its poles are many corners that differ by roundings.
         let mut ball = ball(1.0, 9, 14);

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::memory::model_bytes;
+use crate::monitor::Meter;
 use crate::random::Random;
 use crate::test_shapes::{Shape, ball, grid, torus};
 
@@ -12,11 +13,11 @@ fn with_field(shape: &Shape, inside_out: bool, voxels: usize, check: impl FnOnce
     let mut memory = vec![0; model_bytes(Surface::bytes(count) + Surface::scratch_bytes(count))];
     let needed = memory.len();
     let mut arena = Arena::new(&mut memory, needed).unwrap();
-    let surface = Surface::build(&mesh, inside_out, &mut arena).unwrap();
+    let surface = Surface::build(&mesh, inside_out, &mut arena, &Meter::unwatched()).unwrap();
     let needed = model_bytes(DistanceField::bytes(voxels) + DistanceField::scratch_bytes(count, voxels));
     let mut memory = vec![0xAB; needed];
     let mut arena = Arena::new(&mut memory, needed).unwrap();
-    check(&surface, &DistanceField::build(&surface, voxels, &mut arena).unwrap());
+    check(&surface, &DistanceField::build(&surface, voxels, &mut arena, &mut Meter::unwatched()).unwrap());
 }
 
 /// A box of twelve triangles with corners at the origin and at `size`.

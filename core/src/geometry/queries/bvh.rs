@@ -4,6 +4,7 @@
 
 use super::ray::Ray;
 use crate::geometry::{Aabb, Point};
+use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
 
 /// A box with either two children or a run of items.
@@ -101,6 +102,8 @@ pub(crate) struct Bvh<'m> {
 const LEAF_ITEMS: usize = 4;
 /// Bins along the widest axis, between which the surface-area heuristic may cut.
 const BINS: usize = 12;
+/// Items between two looks at the monitor. A budget: they take about 0.05 ms.
+const ITEMS_A_CHECK: usize = 2048;
 /// Depth from which nodes are halved by count, so that no tree is deeper than `MAX_DEPTH`.
 const HEURISTIC_DEPTH: u32 = 28;
 /// Largest depth, which bounds every traversal stack: `HEURISTIC_DEPTH` plus the halvings of `mesh::MAX_COUNT` items.
@@ -114,7 +117,12 @@ impl<'m> Bvh<'m> {
 
     /// Builds the tree over `items`, at least one, and puts them into tree order, and their names in `order` with them.
     /// `nodes` takes [`max_nodes`](Self::max_nodes).
-    pub(crate) fn build<B: Bounded>(order: &mut [u32], items: &mut [B], nodes: &'m mut [Node]) -> Self {
+    pub(crate) fn build<B: Bounded>(
+        order: &mut [u32],
+        items: &mut [B],
+        nodes: &'m mut [Node],
+        meter: &Meter,
+    ) -> Result<Self, Stop> {
         let mut used = 1;
         let mut pending = heapless::Vec::<(usize, usize, usize, u32), { MAX_DEPTH + 2 }>::new();
         let mut next = Some((0, 0, order.len(), 0));
@@ -122,14 +130,17 @@ impl<'m> Bvh<'m> {
             let run = &mut items[first..first + count];
             // The boxes around the items and around their centres.
             let (mut aabb, mut centres) = (Aabb::EMPTY, Aabb::EMPTY);
-            for bounds in run.iter().map(B::bounds) {
-                aabb = union(&aabb, &bounds);
-                centres = union(&centres, &(bounds.min + bounds.max.coords).bounds());
+            for part in run.chunks(ITEMS_A_CHECK) {
+                meter.check_cancelled()?;
+                for bounds in part.iter().map(B::bounds) {
+                    aabb = union(&aabb, &bounds);
+                    centres = union(&centres, &(bounds.min + bounds.max.coords).bounds());
+                }
             }
             nodes[node] =
                 Node { min: aabb.min.into(), max: aabb.max.into(), first: first as u32, count: count as u32 };
             if count > LEAF_ITEMS {
-                let middle = split(&mut order[first..first + count], run, &centres, depth);
+                let middle = split(&mut order[first..first + count], run, &centres, depth, meter)?;
                 (nodes[node].first, nodes[node].count) = (used as u32, 0);
                 // Holds one sibling per level, so it cannot be full.
                 let _ = pending.push((used + 1, first + middle, count - middle, depth + 1));
@@ -139,7 +150,7 @@ impl<'m> Bvh<'m> {
                 next = pending.pop();
             }
         }
-        Self { nodes: &nodes[..used] }
+        Ok(Self { nodes: &nodes[..used] })
     }
 
     /// The tree that [`build`](Self::build) made in `nodes`.
@@ -296,27 +307,40 @@ impl<'m> Bvh<'m> {
 
 /// Puts `items` and their names into two groups of at least two and returns the size of the first. `centres` is the box
 /// around twice their centres.
-fn split<B: Bounded>(order: &mut [u32], items: &mut [B], centres: &Aabb, depth: u32) -> usize {
+fn split<B: Bounded>(
+    order: &mut [u32],
+    items: &mut [B],
+    centres: &Aabb,
+    depth: u32,
+    meter: &Meter,
+) -> Result<usize, Stop> {
     let axis = centres.extents().imax();
     let (low, width) = (centres.min[axis], centres.extents()[axis]);
     if depth < HEURISTIC_DEPTH && width > 0.0 {
         let bin = |item: &B| (((item.centre(axis) - low) / width * BINS as f32) as u32).min(BINS as u32 - 1);
-        if let Some(cut) = cheapest_cut(items, bin) {
-            return partition(order, items, |item| bin(item) < cut as u32);
+        if let Some(cut) = cheapest_cut(items, bin, meter)? {
+            return partition(order, items, |item| bin(item) < cut as u32, meter);
         }
     }
-    halve(order, items, axis)
+    halve(order, items, axis, meter)
 }
 
 /// The first bin of the right-hand group where the surface-area heuristic is least, if any cut leaves two items
 /// on each side.
-fn cheapest_cut<B: Bounded>(items: &[B], bin: impl Fn(&B) -> u32) -> Option<usize> {
+fn cheapest_cut<B: Bounded>(
+    items: &[B],
+    bin: impl Fn(&B) -> u32,
+    meter: &Meter,
+) -> Result<Option<usize>, Stop> {
     let mut counts = [0_usize; BINS];
     let mut boxes = [Aabb::EMPTY; BINS];
-    for item in items {
-        let bin = bin(item) as usize;
-        counts[bin] += 1;
-        boxes[bin] = union(&boxes[bin], &item.bounds());
+    for part in items.chunks(ITEMS_A_CHECK) {
+        meter.check_cancelled()?;
+        for item in part {
+            let bin = bin(item) as usize;
+            counts[bin] += 1;
+            boxes[bin] = union(&boxes[bin], &item.bounds());
+        }
     }
     let mut right_cost = [0.0; BINS];
     let (mut aabb, mut count) = (Aabb::EMPTY, 0);
@@ -335,25 +359,31 @@ fn cheapest_cut<B: Bounded>(items: &[B], bin: impl Fn(&B) -> u32) -> Option<usiz
             best = Some((cost, cut));
         }
     }
-    best.map(|(_, cut)| cut)
+    Ok(best.map(|(_, cut)| cut))
 }
 
 /// Moves the items that are `left` to the front and returns how many they are.
-fn partition<B>(order: &mut [u32], items: &mut [B], left: impl Fn(&B) -> bool) -> usize {
+fn partition<B>(
+    order: &mut [u32],
+    items: &mut [B],
+    left: impl Fn(&B) -> bool,
+    meter: &Meter,
+) -> Result<usize, Stop> {
     let mut middle = 0;
     for i in 0..items.len() {
+        meter.check_at(i)?;
         if left(&items[i]) {
             order.swap(middle, i);
             items.swap(middle, i);
             middle += 1;
         }
     }
-    middle
+    Ok(middle)
 }
 
 /// Puts the half of the items with the lesser centres in front: quickselect, ties broken by name, so that the
 /// result does not depend on how the sorting is done.
-fn halve<B: Bounded>(order: &mut [u32], items: &mut [B], axis: usize) -> usize {
+fn halve<B: Bounded>(order: &mut [u32], items: &mut [B], axis: usize, meter: &Meter) -> Result<usize, Stop> {
     let middle = items.len() / 2;
     let (mut from, mut to) = (0, items.len());
     while to - from > 1 {
@@ -364,6 +394,7 @@ fn halve<B: Bounded>(order: &mut [u32], items: &mut [B], axis: usize) -> usize {
         let (value, name) = (items[to - 1].centre(axis), order[to - 1]);
         let mut store = from;
         for i in from..to - 1 {
+            meter.check_at(i)?;
             if items[i].centre(axis).total_cmp(&value).then(order[i].cmp(&name)).is_lt() {
                 order.swap(i, store);
                 items.swap(i, store);
@@ -378,7 +409,7 @@ fn halve<B: Bounded>(order: &mut [u32], items: &mut [B], axis: usize) -> usize {
             to = store;
         }
     }
-    middle
+    Ok(middle)
 }
 
 #[cfg(test)]
@@ -390,7 +421,7 @@ mod tests {
         let mut nodes = vec![Node::zeroed(); Bvh::max_nodes(points.len())];
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let mut items = points.to_vec();
-        let bvh = Bvh::build(&mut order, &mut items, &mut nodes);
+        let bvh = Bvh::build(&mut order, &mut items, &mut nodes, &Meter::unwatched()).unwrap();
         assert!(order.iter().zip(&items).all(|(&index, item)| points[index as usize] == *item));
         check(&bvh, &order);
     }
@@ -431,7 +462,7 @@ mod tests {
         let mut order: Vec<u32> = (0..101).collect();
         let mut items = points.clone();
         items[17] = items[80];
-        let middle = halve(&mut order, &mut items, 1);
+        let middle = halve(&mut order, &mut items, 1, &Meter::unwatched()).unwrap();
         assert_eq!(middle, 50);
         let key = |i: usize| (items[i].y, order[i]);
         assert!((0..50).all(|i| (50..101).all(|j| key(i) < key(j))));

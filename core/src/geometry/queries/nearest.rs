@@ -3,6 +3,7 @@
 use super::bvh::MAX_DEPTH;
 use super::point_tree::{Neighbour, PointTree};
 use crate::geometry::{Aabb, Point};
+use crate::monitor::{Meter, Stop};
 use core::ops::Range;
 
 /// Points that share a descent at most: those of two leaves or a few.
@@ -35,14 +36,23 @@ pub(super) fn neighbour(key: u64) -> Neighbour {
 }
 
 /// Calls `visit` with the points of the tree, in order, a group after the other.
-pub(super) fn for_each_group<const K: usize>(tree: &PointTree, mut visit: impl FnMut(&Group<K>)) {
+pub(super) fn for_each_group<const K: usize>(
+    tree: &PointTree,
+    meter: &Meter,
+    mut visit: impl FnMut(&Group<K>),
+) -> Result<(), Stop> {
     let (mut members, mut aabb) = (0..0, Aabb::EMPTY);
     let mut close = |members: Range<usize>, aabb: &Aabb| {
         if !members.is_empty() {
             visit(&Group::find(tree, members, aabb));
         }
     };
+    let mut go_on = Ok(());
     tree.bvh().descend(|_, node| {
+        go_on = go_on.and_then(|()| meter.check_cancelled());
+        if go_on.is_err() {
+            return false;
+        }
         if let Some(items) = node.items() {
             if items.end - members.start > GROUP {
                 close(members.clone(), &aabb);
@@ -53,7 +63,9 @@ pub(super) fn for_each_group<const K: usize>(tree: &PointTree, mut visit: impl F
         }
         true
     });
+    go_on?;
     close(members, &aabb);
+    Ok(())
 }
 
 impl<'a, const K: usize> Group<'a, K> {

@@ -4,6 +4,7 @@ use super::bvh::{Bvh, Node};
 use super::nearest;
 use crate::geometry::{Aabb, Point};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::monitor::{Meter, Stop, Unfinished};
 
 /// Points arranged for neighbour queries. Queries name points by their position in [`points`](Self::points),
 /// which is the tree's order and not the caller's.
@@ -44,14 +45,15 @@ impl<'m> PointTreeSlots<'m> {
     }
 
     /// Arranges `points`, at least one, instead of those before.
-    pub(crate) fn fill(&mut self, points: &[Point]) {
+    pub(crate) fn fill(&mut self, points: &[Point], meter: &Meter) -> Result<(), Stop> {
         let (order, sorted) = (&mut self.order[..points.len()], &mut self.points[..points.len()]);
         for (slot, index) in order.iter_mut().zip(0..) {
             *slot = index;
         }
         sorted.copy_from_slice(points);
-        let bvh = Bvh::build(order, sorted, self.nodes);
+        let bvh = Bvh::build(order, sorted, self.nodes, meter)?;
         self.used = [points.len(), bvh.nodes().len()];
+        Ok(())
     }
 
     /// Names the points by other indices: `names` has one for each point that the tree was filled with.
@@ -125,9 +127,9 @@ impl<'m> PointTree<'m> {
     }
 
     /// Arranges `points`, at least one.
-    pub(crate) fn build(points: &[Point], arena: &mut Arena<'m>) -> Result<Self, OutOfMemory> {
+    pub(crate) fn build(points: &[Point], arena: &mut Arena<'m>, meter: &Meter) -> Result<Self, Unfinished> {
         let mut slots = PointTreeSlots::new(points.len(), arena)?;
-        slots.fill(points);
+        slots.fill(points, meter)?;
         Ok(slots.into_tree())
     }
 
@@ -183,16 +185,20 @@ impl<'m> PointTree<'m> {
 
     /// Calls `visit` for each point, in tree order, with the `K` points closest to it as [`k_nearest`](Self::k_nearest) finds
     /// them: faster for all points than one by one.
-    pub(crate) fn for_each_k_nearest<const K: usize>(&self, mut visit: impl FnMut(usize, &[Neighbour])) {
+    pub(crate) fn for_each_k_nearest<const K: usize>(
+        &self,
+        meter: &Meter,
+        mut visit: impl FnMut(usize, &[Neighbour]),
+    ) -> Result<(), Stop> {
         let mut found = [Neighbour::default(); K];
-        nearest::for_each_group(self, |group: &nearest::Group<K>| {
+        nearest::for_each_group(self, meter, |group: &nearest::Group<K>| {
             for (index, keys) in group.nearest() {
                 for (found, &key) in found.iter_mut().zip(keys) {
                     *found = nearest::neighbour(key);
                 }
                 visit(index, &found[..K.min(self.points.len())]);
             }
-        });
+        })
     }
 
     /// Calls `visit` for each point within `radius` of `query`, in no particular but a repeatable order.
@@ -219,7 +225,7 @@ mod tests {
         let needed = model_bytes(PointTree::bytes(points.len()));
         let mut memory = vec![0xAA; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
-        check(&PointTree::build(points, &mut arena).unwrap());
+        check(&PointTree::build(points, &mut arena, &Meter::unwatched()).unwrap());
     }
 
     #[test]
@@ -236,12 +242,13 @@ mod tests {
         fn check<const K: usize>(points: &[Point]) {
             with_tree(points, |tree| {
                 let mut next = 0;
-                tree.for_each_k_nearest::<K>(|index, nearest| {
+                tree.for_each_k_nearest::<K>(&Meter::unwatched(), |index, nearest| {
                     assert_eq!(index, next);
                     next += 1;
                     let mut found = [Neighbour::default(); K];
                     assert_eq!(nearest, tree.k_nearest(&tree.points()[index], &mut found));
-                });
+                })
+                .unwrap();
                 assert_eq!(next, points.len());
             });
         }
@@ -266,7 +273,7 @@ mod tests {
         let needed = model_bytes(PointTree::bytes(points.len()));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
-        let tree = PointTree::build(&points, &mut arena).unwrap();
+        let tree = PointTree::build(&points, &mut arena, &Meter::unwatched()).unwrap();
         assert!(tree.order().iter().zip(tree.points()).all(|(&i, p)| points[i as usize] == *p));
 
         for query in &queries {

@@ -4,7 +4,8 @@ use super::bvh::{Bvh, Node};
 use super::ray::Ray;
 use crate::geometry::shapes::triangle;
 use crate::geometry::{Aabb, Mesh, Point, Vector};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Stop, Unfinished};
 use bytemuck::{Pod, Zeroable};
 
 /// A triangle mesh with a tree for rays, closest points and the winding number.
@@ -53,7 +54,13 @@ impl<'m> Surface<'m> {
     }
 
     /// Arranges `mesh`; `inside_out` flips what is inside.
-    pub(crate) fn build(mesh: &Mesh, inside_out: bool, arena: &mut Arena<'m>) -> Result<Self, OutOfMemory> {
+    pub(crate) fn build(
+        mesh: &Mesh,
+        inside_out: bool,
+        arena: &mut Arena<'m>,
+        meter: &Meter,
+    ) -> Result<Self, Unfinished> {
+        meter.check_cancelled()?;
         let count = mesh.solid_triangles().count();
         let (triangles, _) = arena.unset::<Point>(3 * count)?.as_chunks_mut();
         let nodes = arena.unset::<Node>(Bvh::max_nodes(count))?;
@@ -64,9 +71,9 @@ impl<'m> Surface<'m> {
         for ((name, corners), triangle) in order.iter_mut().zip(triangles.iter_mut()).zip(solid) {
             (*name, *corners) = (triangle, mesh.corners(triangle as usize));
         }
-        let bvh = Bvh::build(order, triangles, nodes);
+        let bvh = Bvh::build(order, triangles, nodes, meter)?;
         let triangles: &'m [[Point; 3]] = triangles;
-        fill_dipoles(&bvh, triangles, dipoles);
+        fill_dipoles(&bvh, triangles, dipoles, meter)?;
         Ok(Self { triangles, bvh, dipoles, orientation: if inside_out { -1.0 } else { 1.0 } })
     }
 
@@ -185,9 +192,15 @@ impl<'m> Surface<'m> {
 }
 
 /// Sums the dipoles of all nodes from the leaves up.
-fn fill_dipoles(bvh: &Bvh, triangles: &[[Point; 3]], dipoles: &mut [Dipole]) {
+fn fill_dipoles(
+    bvh: &Bvh,
+    triangles: &[[Point; 3]],
+    dipoles: &mut [Dipole],
+    meter: &Meter,
+) -> Result<(), Stop> {
     // Children stand behind their parents.
     for (index, node) in bvh.nodes().iter().enumerate().rev() {
+        meter.check_at(index)?;
         let (mut area, mut area_normal, mut moment) = (0.0, Vector::zeros(), Vector::zeros());
         let mut add = |part_area: f32, part_normal: Vector, part_centre: Vector| {
             area += part_area;
@@ -209,6 +222,7 @@ fn fill_dipoles(bvh: &Bvh, triangles: &[[Point; 3]], dipoles: &mut [Dipole]) {
         let far_squared = BETA * BETA * node.aabb().farthest_squared(&centre);
         dipoles[index] = Dipole { area_normal: area_normal.into(), centre: centre.into(), far_squared, area };
     }
+    Ok(())
 }
 
 #[cfg(test)]
@@ -233,7 +247,7 @@ mod tests {
         let needed = model_bytes(Surface::bytes(triangles.len()) + Surface::scratch_bytes(triangles.len()));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
-        check(&Surface::build(&mesh, inside_out, &mut arena).unwrap());
+        check(&Surface::build(&mesh, inside_out, &mut arena, &Meter::unwatched()).unwrap());
     }
 
     #[test]

@@ -3,7 +3,9 @@
 use super::{Mesh, triangle};
 use crate::disjoint_sets::DisjointSets;
 use crate::geometry::{Point, Vector};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Stop, Unfinished};
+use crate::sort::sort;
 use bytemuck::{Pod, Zeroable};
 use nalgebra::{Matrix3, Vector3};
 
@@ -40,30 +42,32 @@ impl MassProperties {
     pub(crate) const fn scratch_bytes(vertices: usize, triangles: usize) -> usize {
         array_bytes::<u32>(vertices)
             .saturating_add(array_bytes::<u32>(vertices))
-            .saturating_add(array_bytes::<[u32; 2]>(triangles.saturating_mul(3)))
+            .saturating_add(array_bytes::<u32>(vertices.saturating_add(1)))
+            .saturating_add(array_bytes::<[u32; 2]>(triangles.saturating_mul(3)).saturating_mul(2))
             .saturating_add(array_bytes::<Rim>(vertices))
     }
 
-    pub(crate) fn of(mesh: &Mesh, mut scratch: Arena) -> Result<Self, OutOfMemory> {
+    pub(crate) fn of(mesh: &Mesh, mut scratch: Arena, meter: &Meter) -> Result<Self, Unfinished> {
         let aabb = mesh.aabb();
-        let mut holes = Holes::find(mesh, aabb.centre(), &mut scratch)?;
+        let mut holes = Holes::find(mesh, aabb.centre(), &mut scratch, meter)?;
         // Sums of thousands of terms, around the middle of the box, in double precision.
         let middle = aabb.centre().cast::<f64>();
         // Integrals over the surface, over the volume below it, and over the fans that close its holes.
         let (mut shell, mut solid, mut fans) = (Integrals::default(), Integrals::default(), 0.0);
         for index in 0..mesh.triangles().len() {
+            meter.check_at(index)?;
             let corners = mesh.corners(index);
             let area = f64::from(triangle::scaled_normal(&corners).norm()) / 2.0;
             let corners = corners.map(|corner| corner.cast::<f64>() - middle);
             shell.add(&corners, area, 3.0, 12.0);
             solid.add(&corners, tetrahedron(&corners), 4.0, 20.0);
         }
-        holes.for_each_fan_triangle(mesh, |corners| {
+        holes.for_each_fan_triangle(mesh, meter, |corners| {
             let corners = corners.map(|corner| corner.cast::<f64>() - middle);
             let [a, b, c] = corners;
             fans += (b - a).cross(&(c - a)).norm() / 2.0;
             solid.add(&corners, tetrahedron(&corners), 4.0, 20.0);
-        });
+        })?;
         let e = aabb.extents();
         let is_closed = holes.is_none();
         let encloses = (is_closed || fans < MAX_HOLES * shell.whole)
@@ -145,7 +149,7 @@ struct Holes<'s> {
 }
 
 impl<'s> Holes<'s> {
-    fn find(mesh: &Mesh, centre: Point, scratch: &mut Arena<'s>) -> Result<Self, OutOfMemory> {
+    fn find(mesh: &Mesh, centre: Point, scratch: &mut Arena<'s>, meter: &Meter) -> Result<Self, Unfinished> {
         let vertices = mesh.vertices();
         let order = scratch.slice::<u32>(vertices.len())?;
         let welded = scratch.slice::<u32>(vertices.len())?;
@@ -160,23 +164,24 @@ impl<'s> Holes<'s> {
             let (a, b) = (position(*a), position(*b));
             (0..3).fold(core::cmp::Ordering::Equal, |order, i| order.then(a[i].total_cmp(&b[i])))
         };
-        order.sort_unstable_by(|a, b| compare(a, b).then(a.cmp(b)));
+        // Equal ones keep their order, so that the first of them comes first.
+        sort(order, welded, meter, |a, b| compare(a, b).is_lt())?;
         let mut representative = order.first().copied().unwrap_or(0);
-        for &index in order.iter() {
+        for (step, &index) in order.iter().enumerate() {
+            meter.check_at(step)?;
             if compare(&representative, &index).is_ne() {
                 representative = index;
             }
             welded[index as usize] = representative;
         }
-        for (triangle, edges) in mesh.triangles().iter().zip(edges.chunks_exact_mut(3)) {
-            let [a, b, c] = triangle.map(|v| welded[v as usize]);
-            edges.copy_from_slice(&[[a, b], [b, c], [c, a]]);
-        }
-        // Sorted without direction, the runs of one edge stand together.
-        edges.sort_unstable_by_key(undirected);
+        sort_edges(mesh, welded, edges, scratch.scratch(), meter)?;
         let mut connected = DisjointSets::new(order);
-        unmatched(edges).for_each(|[a, b]| connected.join(a, b));
-        for [a, b] in unmatched(edges) {
+        for (step, [a, b]) in unmatched(edges).enumerate() {
+            meter.check_at(step)?;
+            connected.join(a, b);
+        }
+        for (step, [a, b]) in unmatched(edges).enumerate() {
+            meter.check_at(step)?;
             let rim = &mut rims[connected.find(a) as usize];
             let [start, end] = [a, b].map(|vertex| mesh.vertices()[vertex as usize]);
             let length = (end - start).norm();
@@ -192,14 +197,62 @@ impl<'s> Holes<'s> {
     }
 
     /// Calls `visit` with the triangles of the fans that close the holes, wound as the mesh is.
-    fn for_each_fan_triangle(&mut self, mesh: &Mesh, mut visit: impl FnMut([Point; 3])) {
-        for [a, b] in unmatched(self.runs) {
+    fn for_each_fan_triangle(
+        &mut self,
+        mesh: &Mesh,
+        meter: &Meter,
+        mut visit: impl FnMut([Point; 3]),
+    ) -> Result<(), Stop> {
+        for (step, [a, b]) in unmatched(self.runs).enumerate() {
+            meter.check_at(step)?;
             let rim = self.rims[self.connected.find(a) as usize];
             let middle = self.centre + Vector::from(rim.sum) / rim.length.max(f32::MIN_POSITIVE);
             let [start, end] = [a, b].map(|vertex| mesh.vertices()[vertex as usize]);
             visit([end, start, middle]);
         }
+        Ok(())
     }
+}
+
+/// Writes the directed edges between welded vertices to `edges`, those of one edge after each other.
+fn sort_edges(
+    mesh: &Mesh,
+    welded: &[u32],
+    edges: &mut [[u32; 2]],
+    mut scratch: Arena,
+    meter: &Meter,
+) -> Result<(), Unfinished> {
+    let starts = scratch.slice::<u32>(welded.len() + 1)?;
+    let spare = scratch.unset::<[u32; 2]>(edges.len())?;
+    let of = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|v| welded[v as usize]);
+        [[a, b], [b, c], [c, a]]
+    };
+    // By the lesser of both vertices, a bucket each; then within the buckets.
+    let bucket = |edge: &[u32; 2]| undirected(edge).0 as usize;
+    for (step, triangle) in mesh.triangles().iter().enumerate() {
+        meter.check_at(step)?;
+        of(triangle).iter().for_each(|edge| starts[bucket(edge)] += 1);
+    }
+    let mut end = 0;
+    for (step, start) in starts.iter_mut().enumerate() {
+        meter.check_at(step)?;
+        end += *start;
+        *start = end;
+    }
+    for (step, triangle) in mesh.triangles().iter().enumerate() {
+        meter.check_at(step)?;
+        for edge in of(triangle) {
+            let start = &mut starts[bucket(&edge)];
+            *start -= 1;
+            edges[*start as usize] = edge;
+        }
+    }
+    for bounds in starts.windows(2) {
+        let edges = &mut edges[bounds[0] as usize..bounds[1] as usize];
+        sort(edges, spare, meter, |a, b| undirected(a).1 < undirected(b).1)?;
+    }
+    Ok(())
 }
 
 fn undirected(&[a, b]: &[u32; 2]) -> (u32, u32) {
@@ -226,7 +279,7 @@ mod tests {
         let needed = model_bytes(MassProperties::scratch_bytes(vertices.len(), triangles.len()));
         let mut memory = vec![0; needed];
         let mesh = Mesh::new(vertices, triangles).unwrap();
-        MassProperties::of(&mesh, Arena::new(&mut memory, needed).unwrap()).unwrap()
+        MassProperties::of(&mesh, Arena::new(&mut memory, needed).unwrap(), &Meter::unwatched()).unwrap()
     }
 
     const CORNERS: [[f32; 3]; 4] = [[1.0, 2.0, 3.0], [1.6, 2.0, 3.0], [1.0, 2.5, 3.0], [1.0, 2.0, 3.4]];

@@ -1,7 +1,8 @@
 //! Clustering by mean shift.
 
 use crate::geometry::{Point, PointTree, Vector};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Stop, Unfinished};
 use bytemuck::{Pod, Zeroable};
 
 /// A mode that mean shift found.
@@ -37,12 +38,14 @@ pub(crate) fn cluster(
     bandwidth: f32,
     labels: &mut [u32],
     mut scratch: Arena,
-) -> Result<usize, OutOfMemory> {
+    meter: &Meter,
+) -> Result<usize, Unfinished> {
     let modes = scratch.slice::<Mode>(tree.points().len())?;
     let apart = |a: &Point, b: &Point, distance: f32| (a - b).norm_squared() >= distance * distance;
     // Starting points stand in `modes` until they are shifted.
     let mut count = 0;
-    for &seed in seeds {
+    for (step, &seed) in seeds.iter().enumerate() {
+        meter.check_at(step)?;
         let seed = tree.points()[seed as usize];
         if modes[..count].iter().all(|mode| apart(&mode.position.into(), &seed, SEED_DISTANCE * bandwidth)) {
             modes[count] = Mode { position: seed.into(), support: 0 };
@@ -50,7 +53,7 @@ pub(crate) fn cluster(
         }
     }
     for mode in &mut modes[..count] {
-        *mode = shift(tree, mode.position.into(), bandwidth);
+        *mode = shift(tree, mode.position.into(), bandwidth, meter)?;
     }
     // Stable, so that equals stay in the order of the seeds: an insertion sort, as there are few.
     for i in 1..count {
@@ -59,13 +62,15 @@ pub(crate) fn cluster(
     }
     let mut kept = 0;
     for i in 0..count {
+        meter.check_at(i)?;
         let position = modes[i].position.into();
         if modes[..kept].iter().all(|mode| apart(&mode.position.into(), &position, bandwidth)) {
             modes[kept] = modes[i];
             kept += 1;
         }
     }
-    for (label, point) in labels.iter_mut().zip(tree.points()) {
+    for (step, (label, point)) in labels.iter_mut().zip(tree.points()).enumerate() {
+        meter.check_at(step)?;
         let distance = |mode: &Mode| (Point::from(mode.position) - point).norm_squared();
         *label = nearest_of(modes[..kept].iter().map(distance));
     }
@@ -73,9 +78,10 @@ pub(crate) fn cluster(
 }
 
 /// Moves a mode uphill until it converges.
-fn shift(tree: &PointTree, mut position: Point, bandwidth: f32) -> Mode {
+fn shift(tree: &PointTree, mut position: Point, bandwidth: f32, meter: &Meter) -> Result<Mode, Stop> {
     let mut support = 0;
     for _ in 0..MAX_STEPS {
+        meter.check_cancelled()?;
         let mut offset = Vector::zeros();
         support = 0;
         tree.for_each_within(&position, bandwidth, |neighbour| {
@@ -90,7 +96,7 @@ fn shift(tree: &PointTree, mut position: Point, bandwidth: f32) -> Mode {
             break;
         }
     }
-    Mode { position: position.into(), support }
+    Ok(Mode { position: position.into(), support })
 }
 
 /// The position of the least distance, the first of equal ones.
@@ -120,13 +126,14 @@ mod tests {
         let needed = model_bytes(PointTree::bytes(n) + scratch_bytes(n));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
-        let tree = PointTree::build(points, &mut arena).unwrap();
+        let tree = PointTree::build(points, &mut arena, &Meter::unwatched()).unwrap();
         let mut labels = vec![0; n];
         let mut place = vec![0; n];
         for (i, &item) in tree.order().iter().enumerate() {
             place[item as usize] = i as u32;
         }
-        let count = cluster(&tree, &place, bandwidth, &mut labels, arena.scratch()).unwrap();
+        let count =
+            cluster(&tree, &place, bandwidth, &mut labels, arena.scratch(), &Meter::unwatched()).unwrap();
         (count, place.iter().map(|&i| labels[i as usize]).collect())
     }
 
@@ -151,9 +158,9 @@ mod tests {
         let needed = model_bytes(PointTree::bytes(400));
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
-        let tree = PointTree::build(&points, &mut arena).unwrap();
+        let tree = PointTree::build(&points, &mut arena, &Meter::unwatched()).unwrap();
         for start in &points[..40] {
-            let mode = shift(&tree, *start, 0.3);
+            let mode = shift(&tree, *start, 0.3, &Meter::unwatched()).unwrap();
             let position = Point::from(mode.position);
             let near: Vec<_> = points.iter().filter(|p| (*p - position).norm() <= 0.3).collect();
             let mean = near.iter().fold(Vector::zeros(), |sum, p| sum + p.coords) / near.len() as f32;

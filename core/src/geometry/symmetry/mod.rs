@@ -4,6 +4,7 @@
 mod tests;
 
 use super::{DistanceField, Point, Vector, any_perpendicular, eigenvectors};
+use crate::monitor::{Meter, Stop};
 use core::f32::consts::{PI, TAU};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 
@@ -126,12 +127,13 @@ impl Symmetries {
         centre: &Point,
         field: &DistanceField,
         points: &[Point],
-    ) -> Self {
-        let trial = Trial { centre, field, points };
+        meter: &Meter,
+    ) -> Result<Self, Stop> {
+        let trial = Trial { centre, field, points, meter };
         let (_, axes) = eigenvectors(*inertia);
         let mut found = Self::default();
         for axis in axes {
-            if let Some(fold) = trial.fold(&axis) {
+            if let Some(fold) = trial.fold(&axis)? {
                 found.push(Symmetry { axis, fold });
             }
         }
@@ -141,11 +143,11 @@ impl Symmetries {
             found.count = 0;
             found.push(main);
             let axis = trial.axis_across(&main);
-            if trial.looks_the_same(&axis, PI, trial.tolerance(&axis)) {
+            if trial.looks_the_same(&axis, PI, trial.tolerance(&axis))? {
                 found.push(Symmetry { axis, fold: 2 });
             }
         }
-        found
+        Ok(found)
     }
 
     fn push(&mut self, symmetry: Symmetry) {
@@ -159,21 +161,32 @@ struct Trial<'a> {
     centre: &'a Point,
     field: &'a DistanceField<'a>,
     points: &'a [Point],
+    meter: &'a Meter<'a>,
 }
 
 impl Trial<'_> {
     /// The symmetry about an axis with the most turns.
-    fn fold(&self, axis: &Vector) -> Option<u32> {
+    fn fold(&self, axis: &Vector) -> Result<Option<u32>, Stop> {
         let tolerance = self.tolerance(axis);
-        if REVOLUTION.iter().all(|&part| self.looks_the_same(axis, TAU * part, tolerance)) {
-            return Some(0);
-        }
-        // A turn may leave so little that all of them together do not.
-        let is_fold = |fold: &u32| {
-            let angle = |steps: u32| TAU * steps as f32 / *fold as f32;
-            (1..=fold / 2).all(|steps| self.looks_the_same(axis, angle(steps), tolerance))
+        let looks_the_same_after_all = |angles: &mut dyn Iterator<Item = f32>| {
+            for angle in angles {
+                if !self.looks_the_same(axis, angle, tolerance)? {
+                    return Ok(false);
+                }
+            }
+            Ok(true)
         };
-        (2..=MOST_TURNS).rev().find(is_fold)
+        if looks_the_same_after_all(&mut REVOLUTION.iter().map(|part| TAU * part))? {
+            return Ok(Some(0));
+        }
+        for fold in (2..=MOST_TURNS).rev() {
+            // A turn may leave so little that all of them together do not.
+            let angle = |steps: u32| TAU * steps as f32 / fold as f32;
+            if looks_the_same_after_all(&mut (1..=fold / 2).map(angle))? {
+                return Ok(Some(fold));
+            }
+        }
+        Ok(None)
     }
 
     /// Distance from the surface up to which a point is on it after a turn about an axis, metres.
@@ -182,7 +195,8 @@ impl Trial<'_> {
     }
 
     /// Whether the points are on the surface after a turn, to within a tolerance in metres.
-    fn looks_the_same(&self, axis: &Vector, angle: f32, tolerance: f32) -> bool {
+    fn looks_the_same(&self, axis: &Vector, angle: f32, tolerance: f32) -> Result<bool, Stop> {
+        self.meter.check_cancelled()?;
         let stride = self.points.len().div_ceil(TURNED).max(1);
         let rotation = turn(axis, angle).to_rotation_matrix();
         let is_off = |point: &&Point| {
@@ -190,7 +204,7 @@ impl Trial<'_> {
             self.field.distance(&turned).abs() > tolerance
         };
         let most = self.points.len() / stride / SAMPLES_A_MISS;
-        self.points.iter().step_by(stride).filter(is_off).nth(most).is_none()
+        Ok(self.points.iter().step_by(stride).filter(is_off).nth(most).is_none())
     }
 
     /// The largest distance of a point from the axis, metres.

@@ -3,6 +3,7 @@
 use super::*;
 use crate::geometry::{MassProperties, Surface};
 use crate::memory::{Arena, model_bytes};
+use crate::monitor::Meter;
 use crate::perception::sampling;
 use crate::test_shapes::{Shape, ball, prism, revolved, tube};
 use core::f32::consts::FRAC_PI_2;
@@ -20,13 +21,28 @@ fn symmetries(shape: &Shape, centre: Option<Point>) -> Vec<Symmetry> {
     let needed = sizes.map(model_bytes);
     let mut memory = needed.map(|size| vec![0; size]);
     let [a, b, c] = &mut memory;
-    let mass = MassProperties::of(&mesh, Arena::new(c, needed[2]).unwrap()).unwrap();
-    let surface = Surface::build(&mesh, mass.is_inside_out, &mut Arena::new(a, needed[0]).unwrap()).unwrap();
-    let field = DistanceField::build(&surface, VOXELS, &mut Arena::new(b, needed[1]).unwrap()).unwrap();
+    let mass = MassProperties::of(&mesh, Arena::new(c, needed[2]).unwrap(), &Meter::unwatched()).unwrap();
+    let surface = Surface::build(
+        &mesh,
+        mass.is_inside_out,
+        &mut Arena::new(a, needed[0]).unwrap(),
+        &Meter::unwatched(),
+    )
+    .unwrap();
+    let field = DistanceField::build(
+        &surface,
+        VOXELS,
+        &mut Arena::new(b, needed[1]).unwrap(),
+        &mut Meter::unwatched(),
+    )
+    .unwrap();
     let (mut points, mut normals) = ([Point::origin(); 10_000], [Vector::zeros(); 10_000]);
     sampling::scatter_into(&mesh, 0, &mut points, &mut normals);
     let centre = centre.or(mass.volume_centroid).unwrap();
-    Symmetries::find(&mass.inertia, &centre, &field, &points).as_slice().to_vec()
+    Symmetries::find(&mass.inertia, &centre, &field, &points, &Meter::unwatched())
+        .unwrap()
+        .as_slice()
+        .to_vec()
 }
 
 /// Checks the folds that are found, the axis of the first and the angles between them, however the shape is turned.

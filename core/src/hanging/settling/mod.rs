@@ -70,6 +70,8 @@ pub(super) struct Settling<'a> {
     pub(super) params: &'a Params,
     /// Working memory, of [`Support::sleepers`].
     pub(super) sleeps: &'a mut [Sleep],
+    /// As much again, for what runs at the same time.
+    other_sleeps: &'a mut [Sleep],
     pub(super) counts: SettlingCounts,
     /// Greatest merit of a pose so far, and the probability of that pose.
     best: (f32, f32),
@@ -131,7 +133,8 @@ impl<'a> Settling<'a> {
     pub(super) fn new(scene: &Scene<'a>, arena: &mut Arena<'a>) -> Result<Self, PredictError> {
         let Scene { support, symmetries, request, params, .. } = *scene;
         let body = scene.body.ok_or(PredictError::NoDistanceField)?;
-        let sleeps = arena.slice::<Sleep>(Support::sleepers(support.patches.len()))?;
+        let sleepers = Support::sleepers(support.patches.len());
+        let (sleeps, other_sleeps) = (arena.slice::<Sleep>(sleepers)?, arena.slice::<Sleep>(sleepers)?);
         Ok(Self {
             body,
             support,
@@ -139,6 +142,7 @@ impl<'a> Settling<'a> {
             request,
             params,
             sleeps,
+            other_sleeps,
             counts: SettlingCounts::default(),
             best: (0.0, 0.0),
             no_better: 0,
@@ -147,7 +151,7 @@ impl<'a> Settling<'a> {
 
     /// Bytes of working memory, for a supporter of `points`, whose far side has patches as well.
     pub(super) const fn bytes(points: usize) -> usize {
-        array_bytes::<Sleep>(Support::sleepers(far_side::max_points(points)))
+        array_bytes::<Sleep>(Support::sleepers(far_side::max_points(points))).saturating_mul(2)
     }
 
     /// Releases each of `poses`, moves those that stay to the front, the most probable first, and returns their number.
@@ -230,7 +234,8 @@ impl<'a> Settling<'a> {
         let unseen = unseen(scene, &pose, meter)?;
         let least = probability::least_tilt(last, gap, &unseen).max(MIN_USEFUL_TILT);
         let at = (&settled.pose, &contacts[..]);
-        let margin = margin(scene, at, &down, params, least, self.sleeps, meter)?;
+        let sleeps = [&mut *self.sleeps, &mut *self.other_sleeps];
+        let margin = margin(scene, at, &down, params, least, sleeps, meter)?;
         let tolerance = tolerance::of(self.body, &settled.pose, gap, &margin, &contacts);
         let rest = Rest::new(settled.pose, kind, (sinking, gap), tolerance, unseen, margin, &contacts);
         let least = self.params.min_probability;

@@ -1,7 +1,8 @@
 //! Clusters of contact points, as sections II-B and II-C select them.
 
 use crate::geometry::{Point, PointTree, Vector, mean_shift};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Unfinished};
 
 /// Contact points with the label of their cluster.
 pub(super) struct Clusters<'s> {
@@ -23,15 +24,16 @@ impl<'s> Clusters<'s> {
         points: &[Point],
         bandwidth: f32,
         mut scratch: Arena<'s>,
-    ) -> Result<Self, OutOfMemory> {
+        meter: &Meter,
+    ) -> Result<Self, Unfinished> {
         let seeds = scratch.slice::<u32>(points.len())?;
         let labels = scratch.slice::<u32>(points.len())?;
-        let tree = PointTree::build(points, &mut scratch)?;
+        let tree = PointTree::build(points, &mut scratch, meter)?;
         // The seeds are taken in the caller's order: unlike the tree's, it does not change when the frame is rotated.
         for (place, &index) in tree.order().iter().enumerate() {
             seeds[index as usize] = place as u32;
         }
-        let count = mean_shift::cluster(&tree, seeds, bandwidth, labels, scratch)?;
+        let count = mean_shift::cluster(&tree, seeds, bandwidth, labels, scratch, meter)?;
         Ok(Self { points: tree.points(), labels, count })
     }
 

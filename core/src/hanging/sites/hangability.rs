@@ -5,7 +5,7 @@ use crate::best::Best;
 use crate::geometry::{Point, PointTree, Vector, any_perpendicular, rotate_about, unit_or};
 use crate::hanging::samples::ObjectSamples;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
-use crate::monitor::{Meter, Stop};
+use crate::monitor::{Meter, Stop, Unfinished};
 use crate::params::{MAX_DIRECTIONS, Params};
 use bytemuck::{Pod, Zeroable};
 
@@ -84,7 +84,7 @@ impl Hangability<'_> {
         slots: &mut [HangingSite],
         meter: &mut Meter,
         mut scratch: Arena,
-    ) -> Result<(ObjectCounts, Option<Stop>), OutOfMemory> {
+    ) -> Result<(ObjectCounts, Option<Stop>), Unfinished> {
         let mut counts = ObjectCounts::default();
         let contacts = scratch.slice::<Point>(self.samples.points.len())?;
         let selected =
@@ -99,7 +99,7 @@ impl Hangability<'_> {
         let rays = self.rays(&mut scratch)?;
         let hits = scratch.slice::<Hits>(self.samples.params.object_directions)?;
         let bandwidth = self.samples.params.cluster_bandwidth * self.tree.aabb().diagonal();
-        let clusters = Clusters::find(&contacts[..counts.contact_points], bandwidth, scratch)?;
+        let clusters = Clusters::find(&contacts[..counts.contact_points], bandwidth, scratch, meter)?;
 
         let mut sites = Best::new(slots);
         let mut stop = None;

@@ -31,7 +31,7 @@ use super::stage::Stage;
 use crate::best::Best;
 use crate::geometry::{Mesh, Point, PointTree, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
-use crate::monitor::{Meter, Stop};
+use crate::monitor::{Meter, Stop, Unfinished};
 use crate::perception::sampling;
 use hangability::Hangability;
 use supportability::Supportability;
@@ -85,8 +85,9 @@ pub(super) fn sample(
     points: &mut [Point],
     normals: &mut [Vector],
     scratch: Arena,
-) -> Result<(), OutOfMemory> {
-    sampling::sample_into(mesh, seed, points, normals, scratch)
+    meter: &Meter,
+) -> Result<(), Unfinished> {
+    sampling::sample_into(mesh, seed, points, normals, scratch, meter)
 }
 
 /// Fills `slots` with the hanging sites, the best encircled first. `Some` says why the search ended early.
@@ -95,8 +96,8 @@ pub(super) fn find_on_object(
     slots: &mut [HangingSite],
     meter: &mut Meter,
     mut scratch: Arena,
-) -> Result<(ObjectCounts, Option<Stop>), OutOfMemory> {
-    let tree = PointTree::build(samples.points, &mut scratch)?;
+) -> Result<(ObjectCounts, Option<Stop>), Unfinished> {
+    let tree = PointTree::build(samples.points, &mut scratch, meter)?;
     Hangability { samples, tree: &tree }.find(slots, meter, scratch)
 }
 
@@ -121,7 +122,7 @@ pub(super) fn find_on_supporter(
     slots: &mut [SupportSite],
     meter: &mut Meter,
     mut scratch: Arena,
-) -> Result<(SupporterCounts, Option<Stop>), OutOfMemory> {
+) -> Result<(SupporterCounts, Option<Stop>), Unfinished> {
     let normals = scratch.slice::<Vector>(cloud.points.len())?;
     // A point without a normal does not face up, and is no place to hang on.
     let places = cloud.normals.iter().zip(cloud.is_excluded).zip(cloud.tree.order());

@@ -3,8 +3,8 @@
 use super::clusters::Clusters;
 use crate::best::Best;
 use crate::geometry::{Point, PointTree, Vector, any_perpendicular, hull, linked_cluster, rotate_about};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
-use crate::monitor::{Meter, Stop};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Stop, Unfinished};
 use crate::params::Params;
 use bytemuck::{Pod, Zeroable};
 
@@ -62,7 +62,7 @@ impl Supportability<'_> {
         slots: &mut [SupportSite],
         meter: &mut Meter,
         mut scratch: Arena,
-    ) -> Result<(SupporterCounts, Option<Stop>), OutOfMemory> {
+    ) -> Result<(SupporterCounts, Option<Stop>), Unfinished> {
         let up = self.params.up();
         let mut counts = SupporterCounts::default();
         let contacts = scratch.slice::<Point>(self.points.len())?;
@@ -76,7 +76,7 @@ impl Supportability<'_> {
             return Ok((counts, None));
         }
         let bandwidth = self.params.cluster_bandwidth * self.tree.aabb().diagonal();
-        let clusters = Clusters::find(&contacts[..counts.contact_points], bandwidth, scratch)?;
+        let clusters = Clusters::find(&contacts[..counts.contact_points], bandwidth, scratch, meter)?;
         counts.clusters = clusters.count;
         // The clusters have copies of the contact points.
         let slice = contacts;

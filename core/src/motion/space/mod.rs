@@ -23,7 +23,7 @@ use crate::geometry::{Aabb, Bvh, Neighbour, Node, Point, PointTree, PointTreeSlo
 use crate::hanging::Hung;
 use crate::mechanics::{Body, Support};
 use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
-use crate::monitor::{Meter, Stop};
+use crate::monitor::{Meter, Stop, Unfinished};
 use crate::perception::far_side;
 
 /// What moves: an object, a gripper, or an object in a gripper.
@@ -115,7 +115,12 @@ impl<'a> Obstacles<'a> {
     }
 
     /// Arranges the obstacles of a task for queries. Of the scene, only points in `region` matter.
-    pub(super) fn build(task: &Task<'a>, region: &Aabb, arena: &mut Arena<'a>) -> Result<Self, OutOfMemory> {
+    pub(super) fn build(
+        task: &Task<'a>,
+        region: &Aabb,
+        arena: &mut Arena<'a>,
+        meter: &Meter,
+    ) -> Result<Self, Unfinished> {
         let (support, scene) = (task.supporter.support(), task.request.scene);
         let groups = support.groups;
         let order = arena.unset::<u32>(groups.len())?;
@@ -132,7 +137,7 @@ impl<'a> Obstacles<'a> {
                     let Aabb { min, max } = group.aabb();
                     *corners = [min, max];
                 }
-                Some(Bvh::build(order, boxes, nodes))
+                Some(Bvh::build(order, boxes, nodes, meter)?)
             }
         };
         let mut tree = PointTreeSlots::new(scene.len(), arena)?;
@@ -140,6 +145,7 @@ impl<'a> Obstacles<'a> {
         let (points, names) = (scratch.unset::<Point>(scene.len())?, scratch.unset::<u32>(scene.len())?);
         let mut count = 0;
         for (point, name) in scene.iter().zip(0..) {
+            meter.check_at(name as usize)?;
             let point = Point::from(*point);
             if region.contains(&point) {
                 (points[count], names[count]) = (point, name);
@@ -149,7 +155,7 @@ impl<'a> Obstacles<'a> {
         let scene = match count {
             0 => None,
             _ => {
-                tree.fill(&points[..count]);
+                tree.fill(&points[..count], meter)?;
                 tree.rename(names);
                 Some(tree.into_tree())
             }

@@ -5,6 +5,7 @@ use super::planes;
 use super::surroundings::Surroundings;
 use crate::geometry::{Point, Vector, unit_or};
 use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
+use crate::monitor::{Meter, Stop, Unfinished};
 
 /// Edge of the cubes within which the points of a dense cloud are merged, metres: less than half of the distance between
 /// the patches that the mechanics fits, and about the noise of a good depth camera.
@@ -61,19 +62,21 @@ pub(super) fn merge<'s>(
     points: &[Point],
     normals: &[Vector],
     arena: &mut Arena<'s>,
-) -> Result<Kept<'s>, OutOfMemory> {
+    meter: &Meter,
+) -> Result<Kept<'s>, Unfinished> {
     let Kept { points: sums, normals: normal_sums, names, is_on_plane } = Kept::new(points.len(), arena)?;
     let mut scratch = arena.scratch();
     let table = scratch.unset::<u32>(table_size(points.len()))?;
     let members = scratch.slice::<u32>(points.len())?;
     let firsts = scratch.unset::<Point>(points.len())?;
     let on_plane = scratch.slice::<u8>(points.len())?;
-    planes::mark(points, on_plane, scratch.scratch())?;
+    planes::mark(points, on_plane, scratch.scratch(), meter)?;
     let near = Surroundings::of(
         points.iter().zip(&*on_plane).filter(|(_, on)| **on == 0).map(|(point, _)| point),
         &mut scratch,
+        meter,
     )?;
-    let cubes = group(normals, |index| cube(&points[index], CUBE), table, names, |_, _| {});
+    let cubes = group(normals, |index| cube(&points[index], CUBE), table, names, meter, |_, _| {})?;
     let is_dense = points.len() > DENSE * cubes;
     let place = |index: usize| match (on_plane[index], is_dense) {
         (1, _) if near.has(&points[index]) => cube(&points[index], PLANE_CUBE).map(|x| x ^ PLANE_TAG),
@@ -82,7 +85,7 @@ pub(super) fn merge<'s>(
         (_, false) => bits(&points[index]),
     };
     // Sums of offsets from the first point, which keep their precision.
-    let count = group(normals, place, table, names, |index, kept| {
+    let count = group(normals, place, table, names, meter, |index, kept| {
         if members[kept] == 0 {
             (firsts[kept], is_on_plane[kept]) = (points[index], on_plane[index]);
             (sums[kept], normal_sums[kept]) = (Point::origin(), normals[index]);
@@ -91,8 +94,9 @@ pub(super) fn merge<'s>(
             normal_sums[kept] += normals[index];
         }
         members[kept] += 1;
-    });
+    })?;
     for k in 0..count {
+        meter.check_at(k)?;
         sums[k] = firsts[k] + sums[k].coords / members[k] as f32;
         if members[k] > 1 {
             normal_sums[k] = unit_or(normal_sums[k], Vector::zeros());
@@ -160,11 +164,13 @@ fn group(
     place: impl Fn(usize) -> [u32; 3],
     table: &mut [u32],
     firsts: &mut [u32],
+    meter: &Meter,
     mut visit: impl FnMut(usize, usize),
-) -> usize {
+) -> Result<usize, Stop> {
     table.fill(0);
     let mut count = 0_usize;
     for (index, normal) in normals.iter().enumerate() {
+        meter.check_at(index)?;
         let key = place(index);
         // The hash scaled to the length of the table.
         let mut slot = ((u64::from(hash(key)) * table.len() as u64) >> 32) as usize;
@@ -183,7 +189,7 @@ fn group(
         };
         visit(index, group);
     }
-    count
+    Ok(count)
 }
 
 /// The very place of a point. Zero has two representations.

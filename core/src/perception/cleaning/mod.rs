@@ -9,7 +9,8 @@ mod strays;
 mod surroundings;
 
 use crate::geometry::{Point, PointTreeSlots, Vector};
-use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
+use crate::memory::{Arena, array_bytes, larger};
+use crate::monitor::{Meter, Unfinished};
 use merge::Kept;
 
 /// Bytes of what is kept of a cloud of `points`.
@@ -58,30 +59,32 @@ pub(crate) fn clean<'s>(
     is_taken_as_it_is: bool,
     slots: &mut PointTreeSlots,
     arena: &mut Arena<'s>,
-) -> Result<Cleaned<'s>, OutOfMemory> {
+    meter: &Meter,
+) -> Result<Cleaned<'s>, Unfinished> {
     let (normals_kept, spacings) = (arena.unset::<Vector>(points.len())?, arena.slice::<f32>(points.len())?);
     let (is_excluded, is_guessed) = (arena.unset::<u8>(points.len())?, arena.slice::<u8>(points.len())?);
     let mut scratch = arena.scratch();
     let mut kept = match is_taken_as_it_is {
         true => Kept::all(points, normals, &mut scratch)?,
-        false => merge::merge(points, normals, &mut scratch)?,
+        false => merge::merge(points, normals, &mut scratch, meter)?,
     };
     let mut counts = CleaningCounts { merged: points.len() - kept.points.len(), ..CleaningCounts::default() };
-    slots.fill(kept.points);
+    slots.fill(kept.points, meter)?;
     if !is_taken_as_it_is {
         let spacings = &mut spacings[..kept.points.len()];
-        let is_stray = strays::find(&slots.tree(), spacings, kept.is_on_plane, &mut scratch)?;
+        let is_stray = strays::find(&slots.tree(), spacings, kept.is_on_plane, &mut scratch, meter)?;
         counts.strays = is_stray.iter().filter(|flag| **flag > 0).count();
         if counts.strays > 0 {
             kept = kept.without(is_stray);
-            slots.fill(kept.points);
-            spacing::measure(&slots.tree(), &mut spacings[..kept.points.len()]);
+            slots.fill(kept.points, meter)?;
+            spacing::measure(&slots.tree(), &mut spacings[..kept.points.len()], meter)?;
         }
     }
     let count = kept.points.len();
     let (normals, spacings) = (&mut normals_kept[..count], &mut spacings[..count]);
     let (is_excluded, is_guessed) = (&mut is_excluded[..count], &is_guessed[..count]);
     for (place, &index) in slots.tree().order().iter().enumerate() {
+        meter.check_at(place)?;
         normals[place] = kept.normals[index as usize];
         is_excluded[place] = kept.is_on_plane[index as usize];
     }

@@ -1,7 +1,8 @@
 //! Large planes, as walls and tables: things to collide with, not to hang on.
 
 use crate::geometry::{Point, Vector, any_perpendicular};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Stop, Unfinished};
 use crate::perception::plane::Plane;
 use crate::random::Random;
 
@@ -43,7 +44,12 @@ struct Grid {
 }
 
 /// Marks with 1 the points on large planes.
-pub(super) fn mark(points: &[Point], is_on_plane: &mut [u8], mut scratch: Arena) -> Result<(), OutOfMemory> {
+pub(super) fn mark(
+    points: &[Point],
+    is_on_plane: &mut [u8],
+    mut scratch: Arena,
+    meter: &Meter,
+) -> Result<(), Unfinished> {
     let mut probes = scratch.slice::<Point>(points.len().min(PROBES))?;
     let cells = scratch.slice::<u8>(CELLS * CELLS)?;
     let count = probes.len();
@@ -52,11 +58,14 @@ pub(super) fn mark(points: &[Point], is_on_plane: &mut [u8], mut scratch: Arena)
     }
     let mut random = Random::new(0);
     for _ in 0..MAX_PLANES {
+        meter.check_cancelled()?;
         let Some(plane) = Plane::search(probes, TOLERANCE, count / MIN_SHARE, &mut random) else { break };
+        meter.check_cancelled()?;
         let grid = Grid::on(plane);
-        grid.fill(points, cells);
+        grid.fill(points, cells, meter)?;
         if mark_squares(cells) {
-            for (flag, point) in is_on_plane.iter_mut().zip(points) {
+            for (step, (flag, point)) in is_on_plane.iter_mut().zip(points).enumerate() {
+                meter.check_at(step)?;
                 *flag |= u8::from(grid.cell(point).is_some_and(|cell| is_in_or_beside_square(cells, cell)));
             }
         }
@@ -96,9 +105,15 @@ impl Grid {
     }
 
     /// Marks the cells that have points.
-    fn fill(&self, points: &[Point], cells: &mut [u8]) {
+    fn fill(&self, points: &[Point], cells: &mut [u8], meter: &Meter) -> Result<(), Stop> {
         cells.fill(0);
-        points.iter().filter_map(|point| self.cell(point)).for_each(|cell| cells[cell] = OCCUPIED);
+        for (step, point) in points.iter().enumerate() {
+            meter.check_at(step)?;
+            if let Some(cell) = self.cell(point) {
+                cells[cell] = OCCUPIED;
+            }
+        }
+        Ok(())
     }
 }
 

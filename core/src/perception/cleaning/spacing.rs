@@ -1,6 +1,7 @@
 //! How far apart the points of a cloud are, around each of them.
 
 use crate::geometry::{Neighbour, PointTree};
+use crate::monitor::{Meter, Stop};
 
 /// Neighbours that a point's spacing reaches to, itself included: the fourth neighbour of a point in a square grid is the
 /// last one that is a step away.
@@ -14,6 +15,6 @@ pub(super) fn of(nearest: &[Neighbour]) -> f32 {
 }
 
 /// Writes the distance from each point to its fourth neighbour, metres; zero for a point that is alone.
-pub(crate) fn measure(tree: &PointTree, spacings: &mut [f32]) {
-    tree.for_each_k_nearest::<NEIGHBOURS>(|index, nearest| spacings[index] = of(nearest));
+pub(crate) fn measure(tree: &PointTree, spacings: &mut [f32], meter: &Meter) -> Result<(), Stop> {
+    tree.for_each_k_nearest::<NEIGHBOURS>(meter, |index, nearest| spacings[index] = of(nearest))
 }

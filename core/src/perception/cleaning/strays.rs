@@ -3,7 +3,8 @@
 use super::spacing;
 use crate::disjoint_sets::DisjointSets;
 use crate::geometry::{PointTree, Vector, least_eigenvector};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Stop, Unfinished};
 use nalgebra::Matrix3;
 
 // Tolerances, set by hand on the clouds of the tests below.
@@ -44,21 +45,23 @@ pub(super) fn find<'s>(
     spacings: &mut [f32],
     is_on_plane: &[u8],
     arena: &mut Arena<'s>,
-) -> Result<&'s [u8], OutOfMemory> {
+    meter: &Meter,
+) -> Result<&'s [u8], Unfinished> {
     let count = tree.points().len();
     let is_stray = arena.slice::<u8>(count)?;
     let parents = arena.slice::<u32>(count)?;
     let sizes = arena.slice::<u32>(count)?;
     let (nearest, _) = arena.unset::<u32>(count * NEIGHBOURS)?.as_chunks_mut::<NEIGHBOURS>();
-    tree.for_each_k_nearest::<NEIGHBOURS>(|index, neighbours| {
+    tree.for_each_k_nearest::<NEIGHBOURS>(meter, |index, neighbours| {
         spacings[index] = spacing::of(neighbours);
         for (slot, neighbour) in nearest[index].iter_mut().zip(neighbours) {
             *slot = neighbour.index;
         }
-    });
+    })?;
     let overall = median(spacings, sizes);
     let mut pieces = DisjointSets::new(parents);
     for (index, neighbours) in nearest.iter().enumerate() {
+        meter.check_at(index)?;
         if is_on_plane[tree.order()[index] as usize] > 0 {
             continue;
         }
@@ -73,7 +76,7 @@ pub(super) fn find<'s>(
             }
         }
     }
-    flag_specks(tree, &mut pieces, sizes, is_stray);
+    flag_specks(tree, &mut pieces, sizes, is_stray, meter)?;
     is_stray.iter_mut().zip(is_on_plane).for_each(|(flag, on_plane)| *flag &= 1 - on_plane);
     if is_stray.iter().all(|flag| *flag > 0) {
         is_stray.fill(0);
@@ -135,16 +138,25 @@ fn is_flat(offsets: &[Vector]) -> bool {
 }
 
 /// Flags the points of pieces of at most [`MAX_SPECK`] points. `sizes` is working memory.
-fn flag_specks(tree: &PointTree, pieces: &mut DisjointSets, sizes: &mut [u32], is_stray: &mut [u8]) {
+fn flag_specks(
+    tree: &PointTree,
+    pieces: &mut DisjointSets,
+    sizes: &mut [u32],
+    is_stray: &mut [u8],
+    meter: &Meter,
+) -> Result<(), Stop> {
     sizes.fill(0);
     for index in 0..sizes.len() {
+        meter.check_at(index)?;
         sizes[pieces.find(index as u32) as usize] += 1;
     }
     let largest = sizes.iter().copied().max().unwrap_or(0);
     for index in 0..sizes.len() {
+        meter.check_at(index)?;
         let size = sizes[pieces.find(index as u32) as usize];
         if size <= MAX_SPECK && size < largest {
             is_stray[tree.order()[index] as usize] = 1;
         }
     }
+    Ok(())
 }

@@ -2,7 +2,8 @@
 
 use super::cubes::{cube, hash};
 use crate::geometry::Point;
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Unfinished};
 
 /// Edge of the cells, metres. What is within this distance of a thing is near it, and nothing beyond two diagonals: most
 /// objects that hang there reach no farther.
@@ -23,9 +24,11 @@ impl<'s> Surroundings<'s> {
     pub(super) fn of<'p>(
         points: impl Iterator<Item = &'p Point>,
         arena: &mut Arena<'s>,
-    ) -> Result<Self, OutOfMemory> {
+        meter: &Meter,
+    ) -> Result<Self, Unfinished> {
         let (occupied, near) = (arena.slice::<u8>(BITS / 8)?, arena.slice::<u8>(BITS / 8)?);
-        for point in points {
+        for (step, point) in points.enumerate() {
+            meter.check_at(step)?;
             let [x, y, z] = cube(point, CELL);
             if !is_set(occupied, bit([x, y, z])) {
                 set(occupied, bit([x, y, z]));
@@ -74,7 +77,7 @@ mod tests {
         let needed = model_bytes(Surroundings::BYTES);
         let mut memory = std::vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
-        let near = Surroundings::of(things.iter(), &mut arena).unwrap();
+        let near = Surroundings::of(things.iter(), &mut arena, &Meter::unwatched()).unwrap();
         let mut wrong = 0;
         for _ in 0..20_000 {
             let place = point(6.0);

@@ -27,7 +27,7 @@ use super::volume::blocks::{BLOCK, BLOCK_VOXELS};
 use super::volume::voxel::Voxel;
 use crate::Monitor;
 use crate::memory::{Arena, array_bytes, model_bytes};
-use crate::monitor::Meter;
+use crate::monitor::{Meter, Stop};
 use balls::Bounds;
 use grid::{Grid, State};
 use transform::{Line, transform};
@@ -94,8 +94,8 @@ impl Volume<'_> {
         let one_sided = thickness / 2.0 / voxel;
         let bounds = Bounds { one_sided, radius: one_sided.max(radius / voxel) };
         let mut work = Work::new(self, memory)?;
-        work.classify(self);
-        work.find_gaps(self);
+        work.classify(self, &meter)?;
+        work.find_gaps(self, &meter)?;
         meter.progress(0.2);
         work.find_nearest_free(&meter)?;
         meter.progress(0.5);
@@ -131,10 +131,11 @@ impl<'m> Work<'m> {
     }
 
     /// Sets the states.
-    fn classify(&mut self, volume: &Volume) {
+    fn classify(&mut self, volume: &Volume, meter: &Meter) -> Result<(), Stop> {
         let grid = self.grid;
         let certain = -CERTAIN * volume.settings().voxel / volume.settings().truncation;
         for index in 0..self.states.len() {
+            meter.check_at(index)?;
             let voxel = grid.voxel(volume, index);
             let state = if !grid.is_within(grid.steps(index)) {
                 State::Outside
@@ -150,18 +151,21 @@ impl<'m> Work<'m> {
             self.states[index] = state as u8;
         }
         for index in 0..self.states.len() {
+            meter.check_at(index)?;
             let is_outside = |other: &usize| self.state(*other) == State::Outside;
             if self.state(index) == State::Behind && grid.neighbours(index).iter().any(is_outside) {
                 self.states[index] = State::Surface as u8;
             }
         }
+        Ok(())
     }
 
     /// Sets the lengths of the voxels outside: the distance to the plane that cuts the edges to the neighbours where the
     /// signed distance is zero.
-    fn find_gaps(&mut self, volume: &Volume) {
+    fn find_gaps(&mut self, volume: &Volume, meter: &Meter) -> Result<(), Stop> {
         let grid = self.grid;
         for index in 0..self.states.len() {
+            meter.check_at(index)?;
             self.lengths[index] = -1.0;
             if self.state(index) != State::Outside || !grid.is_within(grid.steps(index)) {
                 continue;
@@ -180,11 +184,13 @@ impl<'m> Work<'m> {
                 self.lengths[index] = 1.0 / libm::sqrtf(sum);
             }
         }
+        Ok(())
     }
 
     /// Sets the sites to the nearest voxel outside.
     fn find_nearest_free(&mut self, meter: &Meter) -> Result<(), CompletionError> {
         for index in 0..self.states.len() {
+            meter.check_at(index)?;
             let is_outside = self.state(index) == State::Outside;
             self.values[index] = if is_outside { 0.0 } else { f32::INFINITY };
             self.sites[index] = index as u32;
@@ -195,9 +201,7 @@ impl<'m> Work<'m> {
     /// Sets the lengths of the voxels that are not outside to the radii of the balls that are kept, zero for others.
     fn find_balls(&mut self, bounds: &Bounds, meter: &Meter) -> Result<(), CompletionError> {
         for index in 0..self.states.len() {
-            if index.is_multiple_of(self.grid.strides()[2]) {
-                meter.check()?;
-            }
+            meter.check_at(index)?;
             if self.state(index) != State::Outside {
                 let (states, gaps) = (&*self.states, &*self.lengths);
                 let radius = balls::radius(&self.grid, index, states, self.sites, gaps, bounds);
@@ -210,6 +214,7 @@ impl<'m> Work<'m> {
     /// Sets the values to the signed distance to the union of the balls, voxels, exact where it is zero.
     fn unite_balls(&mut self, meter: &Meter) -> Result<(), CompletionError> {
         for index in 0..self.states.len() {
+            meter.check_at(index)?;
             let radius = self.lengths[index];
             let is_ball = self.state(index) != State::Outside && radius > 0.0;
             self.values[index] = if is_ball { -radius * radius } else { f32::INFINITY };
@@ -217,6 +222,7 @@ impl<'m> Work<'m> {
         }
         transform(self.grid.size, self.values, self.sites, &mut self.line, || meter.check())?;
         for index in 0..self.states.len() {
+            meter.check_at(index)?;
             if self.values[index] < f32::INFINITY {
                 let centre = self.sites[index] as usize;
                 self.values[index] = self.grid.distance(index, centre) - self.lengths[centre];
@@ -229,22 +235,25 @@ impl<'m> Work<'m> {
     fn fill_cavities(&mut self, meter: &Meter) -> Result<(), CompletionError> {
         // From here on, a site is one where free space reaches the voxel.
         for index in 0..self.states.len() {
+            meter.check_at(index)?;
             self.sites[index] = u32::from(self.state(index) == State::Outside);
         }
         let [x, y, z] = self.grid.strides();
         let count = self.states.len();
         let mut changes = true;
         while changes {
-            meter.check()?;
             changes = false;
             for index in z..count {
+                meter.check_at(index)?;
                 changes |= self.reach(index, [index - x, index - y, index - z]);
             }
             for index in (0..count - z).rev() {
+                meter.check_at(index)?;
                 changes |= self.reach(index, [index + x, index + y, index + z]);
             }
         }
         for index in 0..count {
+            meter.check_at(index)?;
             if self.sites[index] == 0 {
                 self.values[index] = self.values[index].min(-self.lengths[index].max(1.0));
             }

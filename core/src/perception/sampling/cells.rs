@@ -2,7 +2,9 @@
 
 use super::{Candidate, MAX_SAMPLES, OVERSAMPLING};
 use crate::geometry::Point;
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Unfinished};
+use crate::sort::sort;
 use core::ops::Range;
 
 /// A sparse grid of cubes as wide as the largest distance that matters.
@@ -66,12 +68,18 @@ impl<'s> Cells<'s> {
             .saturating_add(array_bytes::<[u32; ROWS]>(candidates))
     }
 
+    /// Bytes of working memory of [`sort`](Self::sort).
+    pub(super) const fn scratch_bytes(candidates: usize) -> usize {
+        array_bytes::<u64>(candidates)
+    }
+
     /// Sorts `drawn` into cubes of this width, metres.
     pub(super) fn sort(
         drawn: &[Candidate],
         width: f32,
         scratch: &mut Arena<'s>,
-    ) -> Result<Self, OutOfMemory> {
+        meter: &Meter,
+    ) -> Result<Self, Unfinished> {
         let order = scratch.unset::<u32>(drawn.len())?;
         let [xs, ys, zs] = [(); 3].map(|()| scratch.slice::<f32>(drawn.len() + LANES));
         let mut coordinates = [xs?, ys?, zs?];
@@ -87,9 +95,10 @@ impl<'s> Cells<'s> {
             let cell = offset.map(|x| (x as u64 + FIRST_CELL).min(LAST_CELL)).into();
             *key = number(cell) << INDEX_BITS | index as u64;
         }
-        numbers.sort_unstable();
+        sort(numbers, scratch.scratch().unset(drawn.len())?, meter, |a, b| a < b)?;
         let mut cells = 0;
         for place in 0..drawn.len() {
+            meter.check_at(place)?;
             let key = numbers[place];
             let index = (key & ((1 << INDEX_BITS) - 1)) as usize;
             order[place] = index as u32;
@@ -109,6 +118,7 @@ impl<'s> Cells<'s> {
             // Both the cubes and the rows beside them ascend, so one pass finds all.
             let mut first = 0;
             for (cell, rows) in rows.iter_mut().enumerate() {
+                meter.check_at(cell)?;
                 let target = row_number(numbers[cell], row);
                 while first < cells && numbers[first] < target {
                     first += 1;
@@ -187,9 +197,10 @@ mod tests {
         let drawn: Vec<Candidate> =
             positions.iter().map(|&position| Candidate { position, triangle: 0 }).collect();
         for width in [0.05, 0.3, 2.0] {
-            let mut memory = vec![0xAA; model_bytes(Cells::bytes(drawn.len()))];
+            let mut memory =
+                vec![0xAA; model_bytes(Cells::bytes(drawn.len()) + Cells::scratch_bytes(drawn.len()))];
             let mut arena = Arena::new(&mut memory, 0).unwrap();
-            let cells = Cells::sort(&drawn, width, &mut arena).unwrap();
+            let cells = Cells::sort(&drawn, width, &mut arena, &Meter::unwatched()).unwrap();
             let square = |i: usize, j: usize| {
                 let [a, b] = [i, j].map(|place| drawn[cells.order[place] as usize].position);
                 (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f32>()

@@ -2,7 +2,9 @@
 
 use super::cells::{Cells, LANES};
 use super::falling::{self, FallingQueue};
-use crate::memory::{Arena, OutOfMemory, array_bytes};
+use crate::memory::{Arena, array_bytes};
+use crate::monitor::{Meter, Unfinished};
+use crate::sort::sort;
 
 /// Yuksel's `beta`, which with `gamma` limits the weight of candidates that are very close (eq. 5).
 const BETA: f32 = 0.65;
@@ -13,7 +15,7 @@ const GAMMA: f32 = 1.5;
 pub(super) const fn scratch_bytes(candidates: usize) -> usize {
     array_bytes::<f32>(candidates.saturating_add(LANES))
         .saturating_add(falling::scratch_bytes(candidates))
-        .saturating_add(array_bytes::<u32>(candidates))
+        .saturating_add(array_bytes::<u32>(candidates).saturating_mul(2))
 }
 
 /// Removes the candidate with the heaviest neighbours until `count` are left, and returns the indices of those in the order
@@ -23,11 +25,13 @@ pub(super) fn eliminate<'s>(
     count: usize,
     r_max: f32,
     mut scratch: Arena<'s>,
-) -> Result<&'s [u32], OutOfMemory> {
+    meter: &Meter,
+) -> Result<&'s [u32], Unfinished> {
     let total = cells.order.len();
     let kernel = Kernel::new(count as f32 / total.max(1) as f32, r_max);
     let weights = scratch.slice::<f32>(total + LANES)?;
     for place in 0..total {
+        meter.check_at(place)?;
         let mut own = [0.0; LANES];
         cells.visit_behind(place, |others, squares| {
             if let Some(heavier) = kernel.weights(squares) {
@@ -38,7 +42,8 @@ pub(super) fn eliminate<'s>(
         weights[place] += own.iter().sum::<f32>();
     }
     let mut queue = FallingQueue::new(weights, total, &mut scratch)?;
-    for _ in count..total {
+    for step in count..total {
+        meter.check_at(step)?;
         let Some(heaviest) = queue.pop() else { break };
         let weights = queue.weights();
         cells.visit_all(heaviest, |others, squares| {
@@ -52,7 +57,7 @@ pub(super) fn eliminate<'s>(
         *slot = cells.order[place];
     }
     // Unlike the order of the cells, this one does not change when the mesh is rotated.
-    kept.sort_unstable();
+    sort(kept, scratch.unset(count)?, meter, |a, b| a < b)?;
     Ok(kept)
 }
 

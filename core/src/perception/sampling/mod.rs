@@ -6,7 +6,8 @@ mod elimination;
 mod falling;
 
 use crate::geometry::{Mesh, Point, Vector};
-use crate::memory::{Arena, OutOfMemory, array_bytes, model_bytes};
+use crate::memory::{Arena, OutOfMemory, array_bytes, larger, model_bytes};
+use crate::monitor::{Meter, Monitor, Unfinished};
 pub use crate::params::MAX_SAMPLES;
 use crate::random::Random;
 use cells::Cells;
@@ -25,7 +26,7 @@ pub(crate) const fn scratch_bytes(count: usize) -> usize {
     let candidates = count.saturating_mul(OVERSAMPLING);
     array_bytes::<Candidate>(candidates)
         .saturating_add(Cells::bytes(candidates))
-        .saturating_add(elimination::scratch_bytes(candidates))
+        .saturating_add(larger(Cells::scratch_bytes(candidates), elimination::scratch_bytes(candidates)))
 }
 
 /// Why no samples can be drawn.
@@ -93,7 +94,11 @@ pub fn sample(
     }
     let scratch = Arena::new(memory, sample_bytes(points.len()))?;
     let (points, normals) = (bytemuck::cast_slice_mut(points), bytemuck::cast_slice_mut(normals));
-    Ok(sample_into(mesh, seed, points, normals, scratch)?)
+    match sample_into(mesh, seed, points, normals, scratch, &Meter::new(&Monitor::new())) {
+        Err(Unfinished::OutOfMemory(error)) => Err(error.into()),
+        // Nobody stops this one.
+        Ok(()) | Err(Unfinished::Stopped(_)) => Ok(()),
+    }
 }
 
 /// [`sample`], for callers that have an arena.
@@ -103,14 +108,16 @@ pub(crate) fn sample_into(
     points: &mut [Point],
     normals: &mut [Vector],
     mut scratch: Arena,
-) -> Result<(), OutOfMemory> {
+    meter: &Meter,
+) -> Result<(), Unfinished> {
     let count = points.len();
+    meter.check_cancelled()?;
     let drawn = scratch.unset::<Candidate>(count * OVERSAMPLING)?;
     let area = draw(mesh, seed, drawn.len(), |place, candidate| drawn[place] = candidate);
     // The largest radius that `count` disks on a plane of this area can have (section 3.1).
     let r_max = libm::sqrtf(area / (2.0 * libm::sqrtf(3.0) * count.max(1) as f32));
-    let cells = Cells::sort(drawn, 2.0 * r_max, &mut scratch)?;
-    let kept = eliminate(&cells, count, r_max, scratch)?;
+    let cells = Cells::sort(drawn, 2.0 * r_max, &mut scratch, meter)?;
+    let kept = eliminate(&cells, count, r_max, scratch, meter)?;
     for ((point, normal), &index) in points.iter_mut().zip(normals).zip(kept) {
         (*point, *normal) = drawn[index as usize].on(mesh);
     }
