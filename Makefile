@@ -1,6 +1,6 @@
 .DEFAULT_GOAL := help
 .PHONY: help setup demo picture test test_rust test_c book bench profile tables meant reach calibrate peer lib command build_command install deb dist abi \
-	samples header clean
+	samples header clean embedded trust
 
 help:
 	@echo "make demo     predict how the sample mug hangs on the sample hook, plan a path, simulate it and draw it"
@@ -19,6 +19,8 @@ help:
 	@echo "make install  install the libraries, the headers and the command: [PREFIX=/usr/local] [DESTDIR=...]"
 	@echo "make deb      build the Debian packages libhangpose3, libhangpose-dev and hangpose in build/"
 	@echo "make dist     build a release in build/dist/: archives for x86-64 and aarch64, packages, checksums"
+	@echo "make embedded  run the C library on a Cortex-M7 and on aarch64 under qemu: with the bits of a desktop"
+	@echo "make trust    run the long checks of docs/TRUST.md: the same bits on every processor, build and interface"
 	@echo "make abi      store the binary interface of this version in ffi/abi/"
 	@echo "make samples  regenerate samples/"
 	@echo "make header   regenerate include/hangpose.h from ffi/"
@@ -55,12 +57,21 @@ test_rust:
 	$(target_dir)/debug/examples/header --check
 
 test_c:
-	scripts/bare-metal.sh
+	embedded/test.sh
+	embedded/no_panic.sh
+	embedded/stack.sh
 	scripts/link.sh
 	scripts/colcon.sh
 	scripts/packages.sh
 	scripts/viewer.sh
 	scripts/slurm_test.sh
+
+embedded: setup
+	embedded/test.sh
+
+# What takes longer than a test may.
+trust: embedded
+	embedded/same_bits.sh
 
 book: setup
 	scripts/book.sh
@@ -172,4 +183,4 @@ samples: setup
 
 clean:
 	cargo clean
-	rm -rf bare-metal/target build
+	rm -rf build

@@ -55,13 +55,14 @@ class Figures(unittest.TestCase):
 
 class Instructions(unittest.TestCase):
     def test_counts_are_between_marks(self):
-        text = "".join(f"mark {stage} {count}\n" for stage, count in
-                       [(0, 5), (1, 15), (2, 18), (3, 20), (0, 100), (1, 110), (2, 130), (3, 190)])
+        text = "".join(
+            "".join(f"mark {stage} {count}\n" for stage, count in enumerate(counts)) + f"0 0 2 poses  {name}\n    best\n"
+            for name, counts in [("mug on hook, paper", (5, 5, 15, 18, 20)), ("mug on hook", (100, 100, 110, 130, 190, 200))])
         counts = result.read(text)["counts"]
         self.assertEqual(counts["paper"], {"object": 10, "supporter": 3, "matching": 2})
         self.assertEqual(counts["default"], {"object": 10, "supporter": 20, "matching": 60})
         with self.assertRaises(ValueError):
-            result.read(text.replace("mark 2 130\n", ""))
+            result.read(text.replace("mark 2 110\n", ""))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-# Checks of the symbols of an archive; sourced by bare-metal.sh and link.sh.
+# Checks of the symbols of an archive; sourced by embedded/test.sh and link.sh.
 
 forbidden=(
     # Rust's allocator: the functions that code calls, their implementations, and the crate under either mangling.

@@ -144,11 +144,13 @@ for change in 's/^  uint32_t settle_attempts;/  float settle_attempts;/' 's/^#de
 done
 
 # ---- the C call, in C memory, gives the same bits as the Rust call
-mkdir pairs
-quiet "$target/debug/examples/pairs" pairs
-quiet gcc -std=c11 -O2 $flags tests/c/pairs.c $static_libs -o compare
-quiet ./compare pairs/*.bin
-say "$(cat quiet.log)"
+"$target/debug/examples/pairs" pairs.bin >rust.txt
+quiet gcc -O2 -D_GNU_SOURCE $flags "$root/embedded/pairs.c" $static_libs -pthread -lm -o pairs
+./pairs pairs.bin threads >c.txt
+for who in rust c; do
+    quiet "$root/embedded/compare.py" "$root/embedded/pairs.txt" $who.txt "$who"
+    say "$(cat quiet.log)"
+done
 
 # ---- links beside another Rust archive that has std; and with --gc-sections
 cat >other.rs <<'RUST'

@@ -70,20 +70,19 @@ if ! command -v cargo >/dev/null; then
     exit 1
 fi
 
-# The C compiler and the emulator for aarch64.
-targets=(thumbv7em-none-eabihf)
-if [ "${1:-}" = dist ] || [ "${1:-}" = bench ]; then
-    command -v aarch64-linux-gnu-gcc >/dev/null || missing+=(gcc-aarch64-linux-gnu libc6-dev-arm64-cross)
-    command -v qemu-aarch64 >/dev/null || missing+=(qemu-user)
-    targets+=(aarch64-unknown-linux-gnu)
-fi
+# The C compilers and the emulators for a Cortex-M and for aarch64.
+targets=(thumbv7em-none-eabihf aarch64-unknown-linux-gnu)
+command -v arm-none-eabi-gcc >/dev/null || missing+=(gcc-arm-none-eabi libnewlib-arm-none-eabi)
+command -v qemu-system-arm >/dev/null || missing+=(qemu-system-arm)
+command -v aarch64-linux-gnu-gcc >/dev/null || missing+=(gcc-aarch64-linux-gnu libc6-dev-arm64-cross)
+command -v qemu-aarch64 >/dev/null || missing+=(qemu-user)
+# The stack that each function takes.
+command -v llvm-readelf >/dev/null || missing+=(llvm)
 
-# The peer for nearest neighbours, and the C compiler and the emulator for a Cortex-M.
+# The peer for nearest neighbours.
 if [ "${1:-}" = bench ]; then
     pkg-config --exists nanoflann 2>/dev/null || missing+=(libnanoflann-dev)
     command -v taskset >/dev/null || missing+=(util-linux)
-    command -v arm-none-eabi-gcc >/dev/null || missing+=(gcc-arm-none-eabi libnewlib-arm-none-eabi)
-    command -v qemu-system-arm >/dev/null || missing+=(qemu-system-arm)
 fi
 if [ "${1:-}" = profile ]; then
     command -v perf >/dev/null || missing+=(linux-perf)

@@ -1,35 +1,34 @@
-"""Gathers what predict.c and the counters printed: instructions of each stage by processor and profile.
+"""Gathers what embedded/pairs.c and the counters printed: instructions of each stage by processor and profile.
 
 result.py FOLDER OUT [MISSING ...]
 """
 import json
 import pathlib
-import re
 import sys
 
-STAGES = ("object", "supporter", "matching")
-PROFILES = ("paper", "default")
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "embedded"))
+import stages
+
+# The names of the stages in the report, and of the pairs of each profile.
+STAGES = {"object": "object", "supporter": "supporter", "matching": "poses"}
+PROFILES = {"paper": "mug on hook, paper", "default": "mug on hook"}
 
 
 def read(text):
     """The instructions by profile and stage, and what was predicted."""
-    marks = [tuple(map(int, mark)) for mark in re.findall(r"mark (\d+) (\d+)", text)]
-    counts = {}
-    for index, profile in enumerate(PROFILES):
-        four = marks[4 * index : 4 * index + 4]
-        if [stage for stage, _ in four] != [0, 1, 2, 3]:
-            raise ValueError(f"marks are missing:\n{text}")
-        counts[profile] = {stage: four[k + 1][1] - four[k][1] for k, stage in enumerate(STAGES)}
-    return {"counts": counts, "predicted": re.findall(r"profile .*", text)}
+    pairs = {name: (counts, found) for name, counts, found in stages.pairs(text)}
+    counts = {
+        profile: {stage: pairs[name][0][printed] for stage, printed in STAGES.items()} for profile, name in PROFILES.items()
+    }
+    return {"counts": counts, "predicted": [pairs[name][1] for name in PROFILES.values()]}
 
 
 def main():
     folder, out, *missing = sys.argv[1:]
     files = sorted(pathlib.Path(folder).glob("*.txt"))
     result = {file.stem: read(file.read_text()) for file in files}
-    poses = {tuple(line.split(", best")[1].rsplit(",", 1)[0] for line in found["predicted"]) for found in result.values()}
-    if len(poses) > 1:
-        sys.exit(f"the processors predict different poses: {poses}")
+    if len({tuple(found["predicted"]) for found in result.values()}) > 1:
+        sys.exit(f"the processors predict different poses: {[found['predicted'] for found in result.values()]}")
     pathlib.Path(out).write_text(json.dumps({"processors": result, "missing": missing}))
     for name, found in result.items():
         print(name, found["counts"])

@@ -18,11 +18,15 @@ impl<'a, T: Copy> Best<'a, T> {
 
     /// Inserts `item` behind those that it is not better than. It is dropped if the list is full of better ones.
     pub(crate) fn offer(&mut self, item: T, is_better: impl Fn(&T, &T) -> bool) {
-        let place = self.slots[..self.len].partition_point(|other| !is_better(&item, other));
+        let filled = self.slots.get(..self.len).unwrap_or_default();
+        let place = filled.partition_point(|other| !is_better(&item, other));
         if place < self.slots.len() {
             self.len = (self.len + 1).min(self.slots.len());
-            self.slots[place..self.len].rotate_right(1);
-            self.slots[place] = item;
+            // Each moves on by one place.
+            let mut moved = item;
+            for slot in self.slots.get_mut(place..self.len).unwrap_or_default() {
+                core::mem::swap(slot, &mut moved);
+            }
         }
     }
 
@@ -30,8 +34,11 @@ impl<'a, T: Copy> Best<'a, T> {
     pub(crate) fn drop_where(&mut self, is_dropped: impl Fn(&T) -> bool) {
         let mut kept = 0;
         for index in 0..self.len {
-            if !is_dropped(&self.slots[index]) {
-                self.slots[kept] = self.slots[index];
+            let Some(&item) = self.slots.get(index) else { break };
+            if !is_dropped(&item)
+                && let Some(slot) = self.slots.get_mut(kept)
+            {
+                *slot = item;
                 kept += 1;
             }
         }
@@ -52,11 +59,11 @@ impl<'a, T: Copy> Best<'a, T> {
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = &T> {
-        self.slots[..self.len].iter()
+        self.slots.iter().take(self.len)
     }
 
     pub(crate) fn into_slice(self) -> &'a mut [T] {
-        &mut self.slots[..self.len]
+        self.slots.get_mut(..self.len).unwrap_or_default()
     }
 }
 

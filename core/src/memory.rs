@@ -93,12 +93,14 @@ impl<'m> Arena<'m> {
     pub(crate) fn unset<T: Pod>(&mut self, count: usize) -> Result<&'m mut [T], OutOfMemory> {
         const { assert!(align_of::<T>() <= ALIGNMENT && size_of::<T>() > 0) };
         let bytes = array_bytes::<T>(count);
+        let too_small = OutOfMemory { needed: bytes, given: self.free.len() };
         if bytes > self.free.len() {
-            return Err(OutOfMemory { needed: bytes, given: self.free.len() });
+            return Err(too_small);
         }
         let (taken, rest) = core::mem::take(&mut self.free).split_at_mut(bytes);
         self.free = rest;
-        Ok(bytemuck::cast_slice_mut(&mut taken[..count * size_of::<T>()]))
+        let values = taken.get_mut(..count.saturating_mul(size_of::<T>()));
+        values.and_then(|values| bytemuck::try_cast_slice_mut(values).ok()).ok_or(too_small)
     }
 
     /// What is left, for working memory that is given back when the result goes out of scope.

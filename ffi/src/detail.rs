@@ -61,7 +61,9 @@ fn print(to: &mut [c_char], text: core::fmt::Arguments) {
     // Fails only if the text does not fit. It is then truncated; a test checks that the longest messages fit.
     let _ = writer.write_fmt(text);
     let Writer { to, used } = writer;
-    to[used] = 0;
+    if let Some(end) = to.get_mut(used) {
+        *end = 0;
+    }
 }
 
 struct Writer<'a> {
@@ -71,9 +73,10 @@ struct Writer<'a> {
 
 impl Write for Writer<'_> {
     fn write_str(&mut self, text: &str) -> core::fmt::Result {
-        let room = self.to.len() - 1 - self.used;
+        let free = self.to.get_mut(self.used..).unwrap_or_default();
+        let room = free.len().saturating_sub(1);
         let fits = (0..=room.min(text.len())).rev().find(|&end| text.is_char_boundary(end)).unwrap_or(0);
-        for (slot, byte) in self.to[self.used..].iter_mut().zip(text[..fits].bytes()) {
+        for (slot, byte) in free.iter_mut().zip(text.bytes().take(fits)) {
             *slot = byte as c_char;
         }
         self.used += fits;

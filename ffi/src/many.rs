@@ -165,7 +165,12 @@ unsafe fn share<'a>(
         let shared = unsafe { ObjectHandle::share(object.cast()) };
         shared.map_err(|failure| Failure::Listed { index, fault: ObjectFault::of(&failure) })
     };
-    objects.iter().enumerate().map(share).collect()
+    let mut all = heapless::Vec::new();
+    for object in objects.iter().enumerate() {
+        // Their number was checked above.
+        let _ = all.push(share(object)?);
+    }
+    Ok(all)
 }
 
 impl From<&Many> for hangpose_many {

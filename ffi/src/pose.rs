@@ -13,6 +13,10 @@ pub const HANGPOSE_DIRECTIONS: usize = 8;
 /// Greatest number of contacts in a pose.
 pub const HANGPOSE_MAX_CONTACTS: usize = 8;
 
+/// Deviation of the squared length of a quaternion from 1 that counts as rounding: some ulps. A pose that the library gave
+/// keeps its bits when it comes back.
+const UNIT_ROUNDING: f32 = 1e-6;
+
 const _: () = assert!(HANGPOSE_DIRECTIONS == DIRECTIONS && HANGPOSE_MAX_CONTACTS == MAX_CONTACTS);
 
 /// A contact at which the supporter carries the object, in supporter coordinates. Part of hangpose_pose.
@@ -139,9 +143,14 @@ pub struct hangpose_pose {
 /// The pose of a position in metres and a quaternion x, y, z, w of any length; `None` if the quaternion is no rotation.
 pub(crate) fn pose_of(position: [f32; 3], [x, y, z, w]: [f32; 4]) -> Option<Pose> {
     let quaternion = Quaternion::new(w, x, y, z);
-    let rotation = UnitQuaternion::from_quaternion(quaternion);
-    let is_rotation = quaternion.norm_squared().is_normal();
-    is_rotation.then(|| Pose::from_parts(Vector::from(position).into(), rotation))
+    let square = quaternion.norm_squared();
+    // To normalise what is normal but for rounding would change its last bits.
+    let rotation = if (square - 1.0).abs() <= UNIT_ROUNDING {
+        UnitQuaternion::new_unchecked(quaternion)
+    } else {
+        UnitQuaternion::from_quaternion(quaternion)
+    };
+    square.is_normal().then(|| Pose::from_parts(Vector::from(position).into(), rotation))
 }
 
 /// The pose of a position and a quaternion in fields with these names.

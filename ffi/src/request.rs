@@ -245,16 +245,21 @@ impl<'a> HungObjects<'a> {
         };
         // SAFETY: those of this function.
         let share = |hung: &hangpose_hung| unsafe { hung.share() };
-        let objects = hung
-            .iter()
-            .enumerate()
-            .map(|(index, hung)| share(hung).map_err(|fault| Failure::Hung { index, fault }));
-        objects.collect::<Result<_, _>>().map(Self)
+        let mut objects = heapless::Vec::new();
+        for (index, hung) in hung.iter().enumerate() {
+            // Their number was checked above.
+            let _ = objects.push(share(hung).map_err(|fault| Failure::Hung { index, fault })?);
+        }
+        Ok(Self(objects))
     }
 
     /// The objects as the core takes them.
     pub(crate) fn list(&self) -> heapless::Vec<Hung<'_>, HANGPOSE_MAX_HUNG> {
-        self.0.iter().map(|(object, pose)| Hung { object: object.model(), pose: *pose }).collect()
+        let mut hung = heapless::Vec::new();
+        for (object, pose) in &self.0 {
+            let _ = hung.push(Hung { object: object.model(), pose: *pose });
+        }
+        hung
     }
 
     /// The memory of the objects.

@@ -16,7 +16,10 @@ pub(crate) fn check_room(memory: &[u8], needed: usize) -> Result<(), Failure> {
 /// Splits `memory`, of at least [`slot_bytes`], into `count` values and the rest.
 pub(crate) fn slots<P: Copy + Default>(memory: &mut [u8], count: usize) -> (&mut [P], &mut [u8]) {
     let skip = memory.as_ptr().align_offset(align_of::<P>());
-    let (front, rest) = memory[skip..].split_at_mut(size_of::<P>() * count);
+    let aligned = memory.get_mut(skip..).unwrap_or_default();
+    let bytes = size_of::<P>().saturating_mul(count).min(aligned.len());
+    let (front, rest) = aligned.split_at_mut(bytes);
+    let count = front.len() / size_of::<P>();
     let first = front.as_mut_ptr().cast::<P>();
     for index in 0..count {
         // SAFETY: aligned, and within the bytes counted above.

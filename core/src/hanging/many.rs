@@ -102,10 +102,11 @@ impl<'o> Search<'_, 'o> {
         let mut hung = Vec::<Hung, MAX_HUNG>::new();
         let others = objects.iter().zip(poses).enumerate().filter(|(other, _)| *other != index);
         let placed = others.filter_map(|(_, (object, pose))| Some((object, rest_of((*pose)?))));
-        // Their number is limited to the capacity.
-        hung.extend(
-            self.request.hung.iter().copied().chain(placed.map(|(object, pose)| Hung { object, pose })),
-        );
+        for one in self.request.hung.iter().copied().chain(placed.map(|(object, pose)| Hung { object, pose }))
+        {
+            // Their number is limited to the capacity.
+            let _ = hung.push(one);
+        }
         let request = Request { hung: &hung, ..*self.request };
         let mut choices = [HangingPose::default(); CHOICES];
         let Self { supporter, params, monitor, .. } = *self;

@@ -74,7 +74,8 @@ impl<'s> Neighbourhood<'s> {
             core::mem::replace(&mut self.odometer, Odometer::new(anchors / contacts.len().max(1) as f32));
         self.is_pivot_at_contacts = Some(!contacts.is_empty());
         let pivot = self.odometer.pivot(state);
-        let (patches, groups) = self.sleeps.split_at_mut(support.patches.len());
+        let count = support.patches.len();
+        let (patches, groups) = self.sleeps.split_at_mut_checked(count).unwrap_or_default();
         for (sleep, position) in patches.iter_mut().zip(support.positions()) {
             sleep.restart(&before, &pivot, &position, 0.0);
         }
@@ -118,7 +119,8 @@ impl<'s> Neighbourhood<'s> {
         let search = Search { scene, state, rotation: &rotation, margin, closing: &closing };
         let mut queries = 0;
         contacts.clear();
-        let (patches, groups) = self.sleeps.split_at_mut(support.patches.len());
+        let count = support.patches.len();
+        let (patches, groups) = self.sleeps.split_at_mut_checked(count).unwrap_or_default();
         for (group, group_sleep) in support.groups.iter().zip(groups) {
             let reading = self.odometer.reading(group_sleep.radius);
             if group_sleep.until > reading {

@@ -99,7 +99,17 @@ impl Patch {
             let scale = 1.0 / libm::sqrtf((u * u + v * v).max(1.0));
             return [x * scale, y * scale];
         }
-        [x.clamp(-a, a), y.clamp(-b, b)]
+        // As `clamp`, which panics for a range that is not in order.
+        let within = |x: f32, limit: f32| {
+            if x < -limit {
+                -limit
+            } else if x > limit {
+                limit
+            } else {
+                x
+            }
+        };
+        [within(x, a), within(y, b)]
     }
 
     /// Depth of the surface at an offset below the tangent plane, metres; of a wire, that of its axis.

@@ -107,7 +107,7 @@ fn simulate(
             let turned = start.rotation.angle_to(&state.rotation);
             return Ok(Some(if turned > ROTATION_OFF_ANGLE { Fate::RotatesOff } else { Fate::SlidesOff }));
         }
-        if step % window == 0 {
+        if step.is_multiple_of(window) {
             if motion.touches && body.travel(&window_start, state) < rest_travel {
                 return Ok(Some(Fate::Rests));
             }

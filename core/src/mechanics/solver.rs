@@ -98,15 +98,16 @@ pub(crate) fn solve(
             break;
         }
     }
-    contacts
-        .iter()
-        .zip(&rows)
-        .map(|(contact, row)| Impulse {
+    let mut impulses = Impulses::new();
+    for (contact, row) in contacts.iter().zip(&rows) {
+        // There are no more rows than impulses fit.
+        let _ = impulses.push(Impulse {
             index: contact.index,
             normal: row.impulse[0],
             friction: row.tangents[0] * row.impulse[1] + row.tangents[1] * row.impulse[2],
-        })
-        .collect()
+        });
+    }
+    impulses
 }
 
 /// Returns the displacement, metres, and the rotation vector, radians, that correct a fraction of the

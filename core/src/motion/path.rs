@@ -105,8 +105,8 @@ impl Outline {
     /// The plan with its waypoints.
     pub(super) fn on(self, waypoints: &[Waypoint]) -> Plan<'_> {
         let path = self.path.map(|Shape { object, release, gripper, clearance }| {
-            let (object, rest) = waypoints.split_at(object);
-            Path { object, release, gripper: &rest[..gripper], clearance }
+            let (object, rest) = waypoints.split_at_checked(object).unwrap_or_default();
+            Path { object, release, gripper: rest.get(..gripper).unwrap_or_default(), clearance }
         });
         Plan { path, counts: self.counts, work: self.work }
     }

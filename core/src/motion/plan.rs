@@ -356,8 +356,8 @@ impl<'a> Planner<'_, 'a, '_> {
     /// Sets the times, and turns the path around if the object is taken off.
     fn timed(&self, path: Shape, waypoints: &mut [Waypoint]) -> Shape {
         let (motion, mut path) = (&self.task.motion, path);
-        let (object, rest) = waypoints.split_at_mut(path.object);
-        let gripper = &mut rest[..path.gripper];
+        let (object, rest) = waypoints.split_at_mut_checked(path.object).unwrap_or_default();
+        let gripper = rest.get_mut(..path.gripper).unwrap_or_default();
         let centre = motion.gripper.map_or(self.body.centre, |gripper| gripper.centre());
         if motion.take_off {
             object.reverse();

@@ -87,8 +87,12 @@ impl<'s> Route<'s> {
         }
         self.places.copy_within(last..self.len, at);
         self.clearances.copy_within(last..self.len, at);
-        self.places[first + 1..at].copy_from_slice(between);
-        self.clearances[first..at].copy_from_slice(clearances);
+        for (to, from) in self.places[first + 1..at].iter_mut().zip(between) {
+            *to = *from;
+        }
+        for (to, from) in self.clearances[first..at].iter_mut().zip(clearances) {
+            *to = *from;
+        }
         self.len = at + tail;
         true
     }

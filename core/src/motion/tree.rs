@@ -134,8 +134,12 @@ impl<'s> Tree<'s> {
             let width = |axis: &usize| high[*axis] - low[*axis];
             let axis = (0..low.len()).max_by(|a, b| width(a).total_cmp(&width(b))).unwrap_or(0);
             let half = range.len() / 2;
-            range
-                .select_nth_unstable_by(half, |&a, &b| key(a)[axis].total_cmp(&key(b)[axis]).then(a.cmp(&b)));
+            // Always: the range has more than `FEW` nodes.
+            if half < range.len() {
+                range.select_nth_unstable_by(half, |&a, &b| {
+                    key(a)[axis].total_cmp(&key(b)[axis]).then(a.cmp(&b))
+                });
+            }
             self.axes[first + half] = axis as u8;
             // Half of a range each: the stack holds one for each halving.
             let _ = waiting.push((first, first + half));

@@ -94,7 +94,7 @@ impl Far<'_> {
             let count = count as usize;
             let mut line = [0.0; MOST_BLOCKS_ALONG];
             let line = &mut line[..count];
-            for layer in (0..self.grid.len()).step_by(step * count) {
+            for layer in (0..self.grid.len()).step_by((step * count).max(1)) {
                 for first in layer..layer + step {
                     meter.check_cancelled()?;
                     let blocks = || (first..).step_by(step).take(count);

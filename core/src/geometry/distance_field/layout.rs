@@ -161,7 +161,8 @@ impl Layout {
 
     /// The place of the block of an index.
     pub(super) fn place(&self, block: usize) -> [u32; 3] {
-        let (nx, ny) = (self.blocks[0] as usize, self.blocks[1] as usize);
+        // At least one block stands along each axis, which the compiler cannot see.
+        let (nx, ny) = (self.blocks[0].max(1) as usize, self.blocks[1].max(1) as usize);
         [(block % nx) as u32, (block / nx % ny) as u32, (block / nx / ny) as u32]
     }
 

@@ -95,7 +95,9 @@ impl<'s> Nearest<'s> {
         for (known, distances) in self.known.iter_mut().zip(self.distances.iter()) {
             *known = compare(distances, 0, |distance, _| distance <= EXACT * EXACT);
         }
-        self.fresh.copy_from_slice(self.known);
+        for (to, from) in self.fresh.iter_mut().zip(self.known.iter()) {
+            *to = *from;
+        }
         Ok(())
     }
 

@@ -197,7 +197,7 @@ impl Trial<'_> {
     /// Whether the points are on the surface after a turn, to within a tolerance in metres.
     fn looks_the_same(&self, axis: &Vector, angle: f32, tolerance: f32) -> Result<bool, Stop> {
         self.meter.check_cancelled()?;
-        let stride = self.points.len().div_ceil(TURNED);
+        let stride = self.points.len().div_ceil(TURNED).max(1);
         let rotation = turn(axis, angle).to_rotation_matrix();
         let is_off = |point: &&Point| {
             let turned = self.centre + rotation * (*point - self.centre);

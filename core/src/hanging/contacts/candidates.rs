@@ -154,7 +154,7 @@ impl<'a> CandidateSearch<'a> {
                 self.ways[index].score = f32::NEG_INFINITY;
                 return Ok(());
             }
-            let place = visited as usize * stride % count;
+            let place = visited as usize * stride % count.max(1);
             self.ways[index].visited += 1;
             if let Some(pose) = self.lay(index, place, meter)? {
                 self.counts.clear += 1;

@@ -54,10 +54,12 @@ impl Rest {
         bearing: &[Contact],
     ) -> Self {
         let mut contacts = [Contact::default(); MAX_CONTACTS];
-        contacts[..bearing.len()].copy_from_slice(bearing);
+        for (to, from) in contacts.iter_mut().zip(bearing) {
+            *to = *from;
+        }
         let probability = probability::of(&margin, clearance, &unseen);
         let robustness = probability::of_robust(&margin, &unseen);
-        let contact_count = bearing.len() as u32;
+        let contact_count = bearing.len().min(MAX_CONTACTS) as u32;
         Self {
             pose,
             kind,

@@ -243,7 +243,7 @@ fn is_above(ray: &[f32; 2]) -> bool {
 fn middle_of_longest_maximum(hits: &[Hits]) -> usize {
     let count = hits.len();
     let most = hits.iter().map(|h| h.all).max().unwrap_or(0);
-    let is_most = |index: usize| hits[index % count].all == most;
+    let is_most = |index: usize| hits[index % count.max(1)].all == most;
     let run_from = |start: usize| (0..count).take_while(|offset| is_most(start + offset)).count();
     let (mut start, mut longest) = (0, 0);
     // A run begins behind an entry that is not in it; if there is none, all are equal.
@@ -253,7 +253,7 @@ fn middle_of_longest_maximum(hits: &[Hits]) -> usize {
             (start, longest) = (index, length);
         }
     }
-    (start + longest.saturating_sub(1) / 2) % count
+    (start + longest.saturating_sub(1) / 2) % count.max(1)
 }
 
 /// Eq. (7): of sites with similar free space and direction only the better encircled one stays. Returns how many

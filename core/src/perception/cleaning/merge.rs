@@ -132,8 +132,12 @@ impl<'s> Kept<'s> {
         arena: &mut Arena<'s>,
     ) -> Result<Self, OutOfMemory> {
         let kept = Self::new(points.len(), arena)?;
-        kept.points.copy_from_slice(points);
-        kept.normals.copy_from_slice(normals);
+        for (to, from) in kept.points.iter_mut().zip(points) {
+            *to = *from;
+        }
+        for (to, from) in kept.normals.iter_mut().zip(normals) {
+            *to = *from;
+        }
         for (name, index) in kept.names.iter_mut().zip(0..) {
             *name = index;
         }

@@ -91,6 +91,9 @@ fn median(values: &[f32], bits: &mut [u32]) -> f32 {
         *bits = value.to_bits();
     }
     let middle = bits.len() / 2;
+    if bits.is_empty() {
+        return 0.0;
+    }
     f32::from_bits(*bits.select_nth_unstable(middle).1)
 }
 

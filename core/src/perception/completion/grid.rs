@@ -44,7 +44,8 @@ impl Grid {
     /// The steps of a voxel from the first one along each axis.
     #[inline]
     pub(super) fn steps(&self, index: usize) -> [usize; 3] {
-        let [x, y, _] = self.size;
+        // At least one voxel stands along each axis, which the compiler cannot see.
+        let [x, y, _] = self.size.map(|count| count.max(1));
         [index % x, index / x % y, index / x / y]
     }
 

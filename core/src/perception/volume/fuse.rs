@@ -214,7 +214,7 @@ impl<'a> Fusion<'a> {
     #[inline]
     fn is_near_outline(&self, pixel: [u32; 2], raw: u16, inverse_depth: f32) -> bool {
         let limit = f32::from(raw) + self.jump;
-        let width = self.image.camera().size()[0];
+        let width = self.image.camera().size()[0].max(1);
         self.probes(pixel, inverse_depth).into_iter().any(|probe| match self.image.depths()[probe] {
             0 | NOTHING => self.is_seen_through([probe as u32 % width, probe as u32 / width]),
             other => f32::from(other) > limit,

@@ -1,0 +1,7 @@
+#!/usr/bin/env bash
+# Tests that nothing in the C library recurses without a known end, and that no call takes more than 32 KiB of the
+# stack of a Cortex-M7: from the frames that the compiler reports and the calls in the linked program.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+source "$root/embedded/every.sh"
+"$root/embedded/stack.py" $((32 * 1024)) "$every_m7" arm-none-eabi-objdump
