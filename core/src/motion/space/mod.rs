@@ -224,7 +224,7 @@ impl<'a> Space<'a> {
         let (Some(body), Some(scene)) = (&self.moving.body, &self.obstacles.scene) else { return };
         for pose in free {
             let mut nearest = Nearest::within(2.0 * self.obstacles.scene_radius);
-            ObjectQuery::new(body, pose, &mut nearest).scene(scene, 0.0);
+            ObjectQuery::new(body, pose, &mut nearest, None).scene(scene, 0.0);
             self.obstacles.scene_radius = (0.5 * nearest.distance).max(0.0);
         }
     }
@@ -252,7 +252,7 @@ impl<'a> Space<'a> {
         meter.poses += 1;
         let pose = &at.pose(&moving.centre);
         if let Some(body) = &moving.body {
-            let mut query = ObjectQuery::new(body, pose, found);
+            let mut query = ObjectQuery::new(body, pose, found, Some(meter));
             track.move_to(at, moving.reach);
             query.supporter(obstacles.support, track);
             if let Some(scene) = &obstacles.scene {
@@ -263,7 +263,8 @@ impl<'a> Space<'a> {
                     query.surface(hung.object.surface(), &hung.pose, Obstacle::Hung(index));
                 });
             }
-            meter.distance_queries(query.queries)?;
+            let queries = query.queries;
+            meter.distance_queries(queries)?;
         }
         for part in moving.gripper.iter().flat_map(|gripper| gripper.parts).enumerate() {
             let mut query = CapsuleQuery::new(part, moving.opening, pose, found);
