@@ -539,3 +539,12 @@ fn the_work_limit_ends_the_queries_of_a_large_triangle() {
         assert!(planned.work.distance_queries < 20_000, "{}", planned.work.distance_queries);
     });
 }
+
+/// A start so far away that a step is less than the rounding of the way to it: the search ends all the same.
+#[test]
+fn a_start_out_of_all_reach_has_no_path() {
+    let start = Some(Pose::translation(9e5, 0.0, 0.0));
+    let motion = Motion { start, samples: 3, ..Motion::DEFAULT };
+    let failure = Scene::on_peg().plan(motion).err();
+    assert_eq!(failure, Some(PlanFailure::BudgetUsedUp { samples: 3 }));
+}
