@@ -13,8 +13,8 @@ use hangpose::perception::volume::{Space, Volume, VolumeLimits, VolumeSettings};
 use nalgebra::{Quaternion, UnitQuaternion};
 use std::fmt::Write;
 
-/// Most blocks of a volume here, 2 MB, so that a case takes milliseconds.
-const MOST_BLOCKS: usize = 1000;
+/// Most blocks of a volume here, 0.4 MB, so that a case takes milliseconds.
+const MOST_BLOCKS: usize = 200;
 
 /// An image as a caller gives it.
 pub(crate) struct DrawnImage {

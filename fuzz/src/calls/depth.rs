@@ -7,8 +7,8 @@ use hangpose_ffi::*;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
-/// Most blocks of a volume here, about 1 MB.
-const MOST_BLOCKS: u32 = 500;
+/// Most blocks of a volume here, 0.4 MB.
+const MOST_BLOCKS: u32 = 200;
 
 fn image(drawn: &DrawnImage) -> hangpose_depth_image {
     hangpose_depth_image {
