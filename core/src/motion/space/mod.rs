@@ -70,10 +70,10 @@ const EXACT_UP_TO: f32 = 0.008;
 /// Travel between two poses that are tested at least, metres: less than what a bar is thick. What this misses, the certificate
 /// of the whole route finds.
 const LEAST_STEP: f32 = 0.001;
-/// Most poses at which one leg of a path is tested: 20 m of it at [`LEAST_STEP`], 400 m where nothing is near. A longer leg counts
+/// Most poses at which one leg of a path is tested: 5 m of it at [`LEAST_STEP`], 100 m where nothing is near. A longer leg counts
 /// as blocked. Without this limit a start a thousand kilometres away would never be reached: its steps are below the rounding of the
 /// way to it.
-pub(super) const MAX_STEPS: usize = 20_000;
+pub(super) const MAX_STEPS: usize = 5_000;
 /// Points of a scene at which its spacing is measured.
 const SPACING_PROBES: usize = 64;
 /// Radius of the points of a scene, in multiples of the median distance between neighbours: balls of this radius around the points
