@@ -113,3 +113,14 @@ cargo_fuzz=0.13.2
 if [ "${1:-}" = fuzz ] && ! grep -qF "\"cargo-fuzz $cargo_fuzz " "$tools/.crates.toml" 2>/dev/null; then
     cargo install --quiet --locked --version "$cargo_fuzz" --root "$tools" cargo-fuzz
 fi
+
+# What checks the dependencies and lists them, and the oldest Rust that is promised.
+cargo_deny=0.20.2 cargo_cyclonedx=0.5.9
+if [ "${1:-}" = trust ]; then
+    for tool in "cargo-deny $cargo_deny" "cargo-cyclonedx $cargo_cyclonedx"; do
+        grep -qF "\"$tool " "$tools/.crates.toml" 2>/dev/null ||
+            cargo install --quiet --locked --version "${tool#* }" --root "$tools" "${tool% *}"
+    done
+    oldest=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' "$tools/../../Cargo.toml")
+    ! command -v rustup >/dev/null || rustup toolchain install "$oldest" --profile minimal >/dev/null 2>&1 || true
+fi

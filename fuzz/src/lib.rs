@@ -3,7 +3,7 @@
 //!
 //! A target takes any bytes and panics where the library breaks a promise: it panics itself, writes beyond its memory, takes
 //! more than its input allows, answers differently when it is asked again, or answers with numbers that are none.
-//! `docs/book/fuzzing.md` says how to run them.
+//! `CONTRIBUTING.md` says what to do with what they find.
 
 pub mod calls;
 mod draw;

@@ -5,7 +5,7 @@ pub struct Random(pub u64);
 
 impl Random {
     /// 64 random bits.
-    pub fn next(&mut self) -> u64 {
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -14,7 +14,7 @@ impl Random {
 
     /// A number below `count`; 0 if there is none.
     pub fn below(&mut self, count: usize) -> usize {
-        (self.next() % count.max(1) as u64) as usize
+        (self.bits() % count.max(1) as u64) as usize
     }
 }
 
@@ -24,17 +24,17 @@ pub fn mutated(data: &[u8], other: &[u8], random: &mut Random) -> Vec<u8> {
     for _ in 0..1 + random.below(5) {
         let at = random.below(bytes.len());
         if bytes.is_empty() {
-            bytes.push(random.next() as u8);
+            bytes.push(random.bits() as u8);
             continue;
         }
         match random.below(9) {
-            0 => bytes[at] = random.next() as u8,
+            0 => bytes[at] = random.bits() as u8,
             1 => bytes[at] ^= 1 << random.below(8),
             // Numbers and signs matter most in texts.
             2 => bytes[at] = b"0123456789-.eE ,[]{}\"<>/\n"[random.below(25)],
             3 => drop(bytes.remove(at)),
             4 => bytes.truncate(at),
-            5 => bytes.insert(at, random.next() as u8),
+            5 => bytes.insert(at, random.bits() as u8),
             6 => {
                 let end = (at + 1 + random.below(32)).min(bytes.len());
                 let copy = bytes[at..end].to_vec();

@@ -88,7 +88,7 @@ fn made_up(count: u64, most: usize) -> Vec<Vec<u8>> {
         let length = 16 + random.below(most);
         // Small numbers, which take the plain choices, and any.
         let mask = [0x0f, 0x3f, 0xff][random.below(3)];
-        (0..length).map(|_| random.next() as u8 & mask).collect()
+        (0..length).map(|_| random.bits() as u8 & mask).collect()
     });
     [vec![0; 16]].into_iter().chain(made).collect()
 }

@@ -45,3 +45,23 @@ fn images() {
 fn calls() {
     check("calls", 3_000);
 }
+
+#[test]
+fn every_function_of_the_header_is_called() {
+    let header = include_str!("../../include/hangpose.h");
+    let calls = [
+        include_str!("../src/calls/mod.rs"),
+        include_str!("../src/calls/hang.rs"),
+        include_str!("../src/calls/depth.rs"),
+    ]
+    .concat();
+    let declared = header.lines().filter(|line| !line.starts_with("//") && !line.starts_with(' '));
+    let functions: Vec<_> = declared
+        .filter_map(|line| line.split_once('(')?.0.split([' ', '*']).next_back())
+        .filter(|name| name.starts_with("hangpose_"))
+        .collect();
+    assert!(functions.len() > 40, "{functions:?}");
+    for function in functions {
+        assert!(calls.contains(function), "{function} is never called");
+    }
+}

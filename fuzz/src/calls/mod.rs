@@ -125,7 +125,7 @@ impl<'a> Program<'a> {
                 write!(self.said, "{words:?} {} {} ", detail.index, detail.value).unwrap();
             }
         }
-        write!(self.said, "{name} {status}\n").unwrap();
+        writeln!(self.said, "{name} {status}").unwrap();
         status
     }
 
