@@ -118,7 +118,7 @@ fn meshes_and_clouds() {
 #[test]
 fn a_chain_of_joints_is_walked_once() {
     let scene = Scene::new();
-    let count = 3_000;
+    let count = 20_000;
     let links: String = (0..count).map(|i| format!("<link name=\"l{i}\"/>")).collect();
     let last = "<link name=\"end\"><visual><geometry><box size=\"0.1 0.1 0.1\"/></geometry></visual></link>";
     let joint = |i: usize, child: String| {
@@ -136,29 +136,15 @@ fn a_chain_of_joints_is_walked_once() {
     assert!(begun.elapsed() < TIME, "{:?}", begun.elapsed());
 }
 
-/// A PNG with one chunk more after its header.
-fn with_chunk(png: &[u8], kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
-    let mut typed = kind.to_vec();
-    typed.extend(content);
-    let sum = typed.iter().fold(u32::MAX, |sum, byte| {
+/// A PNG whose header says another size, with its checksum.
+fn resized(png: &[u8], size: u32) -> Vec<u8> {
+    let size = size.to_be_bytes();
+    // After the signature of 8 bytes and the length, the header is IHDR, width, height and 5 bytes more.
+    let header = [&b"IHDR"[..], &size, &size, &png[24..29]].concat();
+    let sum = header.iter().fold(u32::MAX, |sum, byte| {
         (0..8).fold(sum ^ u32::from(*byte), |sum, _| (sum >> 1) ^ (0xedb8_8320 & (sum & 1).wrapping_neg()))
     });
-    let length = (content.len() as u32).to_be_bytes();
-    // The signature has 8 bytes and the header 25.
-    [&png[..33], &length, &typed, &(!sum).to_be_bytes(), &png[33..]].concat()
-}
-
-/// The size in the header of a PNG, with its checksum.
-fn resized(png: &[u8], size: u32) -> Vec<u8> {
-    let mut header = png[16..29].to_vec();
-    header[..4].copy_from_slice(&size.to_be_bytes());
-    header[4..8].copy_from_slice(&size.to_be_bytes());
-    [
-        &with_chunk(&[&png[..8], &[0; 25]].concat(), b"IHDR", &header)[..8],
-        &with_chunk(&[0; 33], b"IHDR", &header)[33..],
-        &png[33..],
-    ]
-    .concat()
+    [&png[..12], &header, &(!sum).to_be_bytes(), &png[33..]].concat()
 }
 
 #[test]
@@ -168,18 +154,13 @@ fn depth_images() {
     let small = images::depth_png([16, 16], &[500; 256]);
     // 60 MB that pack to 60 kB: an image as large as it says, which the camera does not fit.
     let long = images::png([3_000_000, 10], ColorType::Grayscale, BitDepth::Sixteen, &vec![0; 60_000_000]);
-    // 200 MB of nothing, as a profile of colours.
-    let zeros = images::png([100_000_000, 2], ColorType::Grayscale, BitDepth::Eight, &vec![0; 200_000_000]);
-    let packed = &zeros[41..zeros.len() - 16];
     for (name, content, part) in [
         ("huge.png", resized(&small, 100_000), "too short for 100000 x 100000 pixels"),
         ("most.png", resized(&small, 0x7fff_ffff), "limits"),
         ("long.png", long, ""),
-        ("profile.png", with_chunk(&small, b"iCCP", &[b"a\0\0", packed].concat()), ""),
-        ("text.png", with_chunk(&small, b"zTXt", &[b"a\0\0", packed].concat()), ""),
     ] {
         let path = scene.write(name, content);
-        // An image that can be read does not fit to the camera, whose name is then in the message.
+        // The image that can be read does not fit to the camera, whose name is then in the message.
         let named = if part.is_empty() { camera.clone() } else { path.clone() };
         let out = scene.path("out.ply");
         let [depth, camera, out] = [&path, &camera, &out].map(|path| path.to_str().unwrap());
