@@ -1,12 +1,14 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo picture test test_rust test_c book bench profile tables meant reach calibrate peer lib command build_command install deb dist abi \
-	samples header clean embedded trust
+.PHONY: help setup demo picture test test_rust test_c embedded fuzz trust book bench profile tables meant reach calibrate peer lib \
+	command build_command install deb dist abi samples header clean
 
 help:
 	@echo "make demo     predict how the sample mug hangs on the sample hook, plan a path, simulate it and draw it"
 	@echo "make picture  make the pictures of the README anew: docs/demo.png and docs/hang.gif"
 	@echo "make book     build the book in build/book and check all that it says"
 	@echo "make test     run all checks and tests"
+	@echo "make fuzz     run the fuzz targets, T seconds in all: [T=60]"
+	@echo "make trust    check the supply chain and fuzz for five minutes"
 	@echo "make bench    measure time and memory, also of other libraries, and write docs/PERFORMANCE.md [PEER=peer.py] [MESHES=folder]"
 	@echo "make profile  show where the time goes: build/profile.svg and build/profile.txt"
 	@echo "make peer     compare poses with another implementation: PEER=peer.py MESHES=folder"
@@ -69,9 +71,20 @@ test_c:
 embedded: setup
 	embedded/test.sh
 
+T ?= 60
+
+fuzz:
+	@scripts/setup.sh fuzz
+	scripts/fuzz.sh $(T)
+
 # What takes longer than a test may.
 trust: embedded
+	@scripts/setup.sh trust
 	embedded/same_bits.sh
+	cargo run --release -p host-tests --bin cancel -- --limit 1
+	scripts/supply.sh
+	scripts/reproducible.sh
+	$(MAKE) --no-print-directory fuzz T=300
 
 book: setup
 	scripts/book.sh

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the missing tools of `make test` and `make demo`, and with the argument `dist`, `bench` or `profile` those of that
-# target of make, too. Quick if nothing is missing.
+# Installs the missing tools of `make test` and `make demo`, and with the argument `dist`, `bench`, `profile`, `fuzz` or `trust` those
+# of that target of make, too. Quick if nothing is missing.
 set -euo pipefail
 
 as_root() {
@@ -105,4 +105,21 @@ inferno=0.12.8
 tools=$(cd "$(dirname "$0")/.." && pwd)/build/tools
 if [ "${1:-}" = profile ] && ! grep -qF "\"inferno $inferno " "$tools/.crates.toml" 2>/dev/null; then
     cargo install --quiet --locked --version "$inferno" --root "$tools" inferno
+fi
+
+# What runs the fuzz targets.
+cargo_fuzz=0.13.2
+if [ "${1:-}" = fuzz ] && ! grep -qF "\"cargo-fuzz $cargo_fuzz " "$tools/.crates.toml" 2>/dev/null; then
+    cargo install --quiet --locked --version "$cargo_fuzz" --root "$tools" cargo-fuzz
+fi
+
+# What checks the dependencies and lists them, and the oldest Rust that is promised.
+cargo_deny=0.20.2 cargo_cyclonedx=0.5.9
+if [ "${1:-}" = trust ]; then
+    for tool in "cargo-deny $cargo_deny" "cargo-cyclonedx $cargo_cyclonedx"; do
+        grep -qF "\"$tool " "$tools/.crates.toml" 2>/dev/null ||
+            cargo install --quiet --locked --version "${tool#* }" --root "$tools" "${tool% *}"
+    done
+    oldest=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' "$tools/../../Cargo.toml")
+    ! command -v rustup >/dev/null || rustup toolchain install "$oldest" --profile minimal >/dev/null 2>&1 || true
 fi

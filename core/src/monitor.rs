@@ -214,9 +214,14 @@ impl<'a> Meter<'a> {
     }
 
     pub(crate) fn check(&self) -> Result<(), Stop> {
+        self.check_with(0)
+    }
+
+    /// Whether the call may go on with `queries` distance queries more, which are booked later.
+    pub(crate) fn check_with(&self, queries: usize) -> Result<(), Stop> {
         if self.monitor.is_cancelled() {
             Err(Stop::Cancelled)
-        } else if self.work.rays + self.work.distance_queries > self.monitor.work_limit {
+        } else if self.work.rays + self.work.distance_queries + queries as u64 > self.monitor.work_limit {
             Err(Stop::WorkLimit)
         } else {
             Ok(())

@@ -2,7 +2,7 @@
 
 use super::path::MAX_CLEARANCE;
 use super::route::Route;
-use super::space::Space;
+use super::space::{MAX_STEPS, Space};
 use crate::mechanics::is_off_surface;
 use crate::monitor::{Meter, Stop};
 
@@ -14,7 +14,7 @@ const STEP: f32 = 0.001;
 const LEAST_DISTANCE: f32 = 0.00005;
 
 /// The least distance from obstacles at the poses of a route that are tested, metres, capped at [`MAX_CLEARANCE`]; or the first leg
-/// on which the supporter passes through the mesh of the object. From one of these poses to the next no point of the object
+/// on which the supporter passes through the mesh of the object, or that takes more than four times [`MAX_STEPS`] tests, as its steps are a quarter as long. From one of these poses to the next no point of the object
 /// moves farther than [`STEP`], or than a quarter of the distance there.
 pub(super) fn certify(
     space: &mut Space,
@@ -26,7 +26,7 @@ pub(super) fn certify(
     for index in 0..route.legs() {
         let (from, leg) = (route.places()[index], route.leg(index));
         let travel = leg.travel(moving.reach).max(1e-9);
-        let mut share = 0.0;
+        let (mut share, mut steps) = (0.0, 0);
         loop {
             let place = from.after(&leg, share);
             let distance = space.nearest(&place, MAX_CLEARANCE, meter)?.distance;
@@ -44,6 +44,10 @@ pub(super) fn certify(
             }
             if share >= 1.0 {
                 break;
+            }
+            steps += 1;
+            if steps > 4 * MAX_STEPS {
+                return Ok(Err(index));
             }
             share = (share + (0.25 * distance).max(STEP) / travel).min(1.0);
         }

@@ -514,3 +514,37 @@ fn the_first_pose_that_can_be_reached() {
         );
     });
 }
+
+/// A triangle of 100 m that is everywhere close to the object would be halved 16 million times.
+#[test]
+fn the_work_limit_ends_the_queries_of_a_large_triangle() {
+    let scene = Scene::on_peg();
+    let mut wall = scene.object.clone();
+    wall.append(
+        &Shape {
+            vertices: vec![[-100.0, -100.0, 0.0], [100.0, -100.0, 0.0], [0.0, 100.0, 0.0]],
+            triangles: vec![[0, 1, 2]],
+        },
+        Vector::zeros(),
+    );
+    let scene = Scene { object: wall, ..scene };
+    scene.analyse(|object, supporter, params| {
+        let hung = [Hung { object, pose: scene.goal }];
+        let request = &Request { hung: &hung, ..Request::ANY };
+        let task = Task { object, supporter, request, params, motion: Motion::DEFAULT };
+        let mut memory = vec![0; plan_bytes(&supporter.limits(), 0, task.motion.nodes)];
+        let monitor = Monitor::with_work_limit(10_000);
+        let planned = plan(&task, &scene.goal(), &mut [], &mut |_| true, &mut memory, &monitor).unwrap();
+        assert_eq!(planned.path, Err(PlanFailure::Stopped(Stop::WorkLimit)));
+        assert!(planned.work.distance_queries < 20_000, "{}", planned.work.distance_queries);
+    });
+}
+
+/// A start so far away that a step is less than the rounding of the way to it: the search ends all the same.
+#[test]
+fn a_start_out_of_all_reach_has_no_path() {
+    let start = Some(Pose::translation(9e5, 0.0, 0.0));
+    let motion = Motion { start, samples: 3, ..Motion::DEFAULT };
+    let failure = Scene::on_peg().plan(motion).err();
+    assert_eq!(failure, Some(PlanFailure::BudgetUsedUp { samples: 3 }));
+}

@@ -1,5 +1,6 @@
 //! The file of a gripper: capsules in object coordinates, metres.
 
+use super::toml_error;
 use anyhow::{Context, Result, anyhow};
 use hangpose::motion::{Capsule, Gripper};
 use serde::Deserialize;
@@ -41,7 +42,7 @@ impl Hand {
             anyhow!(
                 "{}: {}\ngive retreat = [x, y, z] and for each part [[part]] from = [x, y, z], to = [x, y, z], radius and opening = [x, y, z]: object coordinates, metres",
                 at(),
-                error.to_string().trim_end()
+                toml_error::text(&error)
             )
         })?;
         let parts =

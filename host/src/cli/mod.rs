@@ -24,6 +24,7 @@ pub(crate) mod shell;
 mod shown;
 mod source;
 mod terminal;
+mod toml_error;
 pub(crate) mod view;
 
 pub(crate) use terminal::say;

@@ -1,6 +1,6 @@
 //! The constants of the method from a profile, a file and the command line.
 
-use super::{FrameArguments, MethodArguments, Profile};
+use super::{FrameArguments, MethodArguments, Profile, toml_error};
 use anyhow::{Context, Result, anyhow};
 use hangpose::{CentreOfMass, Params};
 use std::path::Path;
@@ -44,7 +44,7 @@ fn overlay(profile: &Params, path: &Path) -> Result<Params> {
         .with_context(|| format!("{}: cannot be read; give a readable TOML file of constants", at()))?;
     // Parsed as `Params` first: these errors name the line and the valid keys.
     let checked: Params =
-        toml::from_str(&text).map_err(|error| anyhow!("{}: {}", at(), error.to_string().trim_end()))?;
+        toml::from_str(&text).map_err(|error| anyhow!("{}: {}", at(), toml_error::text(&error)))?;
     checked.validate().with_context(|| format!("{}: correct this value", at()))?;
     let mut merged = toml::Table::try_from(profile).context("a profile is a table")?;
     merged.extend(text.parse::<toml::Table>().with_context(at)?);

@@ -2,7 +2,9 @@
 
 mod bad_input;
 mod batch;
+mod bombs;
 mod depth;
+mod faults;
 mod how_and_where;
 mod inspect;
 mod json;

@@ -70,6 +70,10 @@ const EXACT_UP_TO: f32 = 0.008;
 /// Travel between two poses that are tested at least, metres: less than what a bar is thick. What this misses, the certificate
 /// of the whole route finds.
 const LEAST_STEP: f32 = 0.001;
+/// Most poses at which one leg of a path is tested: 5 m of it at [`LEAST_STEP`], 100 m where nothing is near. A longer leg counts
+/// as blocked. Without this limit a start a thousand kilometres away would never be reached: its steps are below the rounding of the
+/// way to it.
+pub(super) const MAX_STEPS: usize = 5_000;
 /// Points of a scene at which its spacing is measured.
 const SPACING_PROBES: usize = 64;
 /// Radius of the points of a scene, in multiples of the median distance between neighbours: balls of this radius around the points
@@ -230,7 +234,7 @@ impl<'a> Space<'a> {
         let (Some(body), Some(scene)) = (&self.moving.body, &self.obstacles.scene) else { return };
         for pose in free {
             let mut nearest = Nearest::within(2.0 * self.obstacles.scene_radius);
-            ObjectQuery::new(body, pose, &mut nearest).scene(scene, 0.0);
+            ObjectQuery::new(body, pose, &mut nearest, None).scene(scene, 0.0);
             self.obstacles.scene_radius = (0.5 * nearest.distance).max(0.0);
         }
     }
@@ -258,7 +262,7 @@ impl<'a> Space<'a> {
         meter.poses += 1;
         let pose = &at.pose(&moving.centre);
         if let Some(body) = &moving.body {
-            let mut query = ObjectQuery::new(body, pose, found);
+            let mut query = ObjectQuery::new(body, pose, found, Some(meter));
             track.move_to(at, moving.reach);
             query.supporter(obstacles.support, track);
             if let Some(scene) = &obstacles.scene {
@@ -269,7 +273,8 @@ impl<'a> Space<'a> {
                     query.surface(hung.object.surface(), &hung.pose, Obstacle::Hung(index));
                 });
             }
-            meter.distance_queries(query.queries)?;
+            let queries = query.queries;
+            meter.distance_queries(queries)?;
         }
         for part in moving.gripper.iter().flat_map(|gripper| gripper.parts).enumerate() {
             let mut query = CapsuleQuery::new(part, moving.opening, pose, found);
@@ -303,7 +308,7 @@ impl<'a> Space<'a> {
         let travel = leg.travel(self.moving.reach).max(1e-9);
         let mut way = Way { share: 0.0, clearance: MAX_CLEARANCE };
         let mut share = 0.0;
-        loop {
+        for _ in 0..MAX_STEPS {
             let place = from.after(leg, share);
             let room = self.room_at(&place);
             if room < 0.0 {
@@ -320,5 +325,6 @@ impl<'a> Space<'a> {
             let step = (distance - 0.5 * required).min(room).max(LEAST_STEP);
             share = (share + step / travel).min(1.0);
         }
+        Ok(way)
     }
 }

@@ -5,6 +5,7 @@ use super::track::Track;
 use super::{EXACT_UP_TO, PATCH_RANGE};
 use crate::geometry::{Aabb, Node, Point, PointTree, Pose, Surface, Vector, halves};
 use crate::mechanics::{Body, Gap, Support, gap_to_patch};
+use crate::monitor::Meter;
 use crate::motion::failure::{Mover, Obstacle};
 use nalgebra::Rotation3;
 
@@ -21,11 +22,18 @@ pub(super) struct ObjectQuery<'q, 'a> {
     pub(super) found: &'q mut dyn Collector,
     /// Distance queries made.
     pub(super) queries: usize,
+    /// Stops the queries of a large triangle, of which there may be millions; `None` where there are no triangles.
+    meter: Option<&'q Meter<'q>>,
 }
 
 impl<'q, 'a> ObjectQuery<'q, 'a> {
-    pub(super) fn new(body: &'q Body<'a>, pose: &'q Pose, found: &'q mut dyn Collector) -> Self {
-        Self { body, pose, to_object: pose.inverse(), found, queries: 0 }
+    pub(super) fn new(
+        body: &'q Body<'a>,
+        pose: &'q Pose,
+        found: &'q mut dyn Collector,
+        meter: Option<&'q Meter<'q>>,
+    ) -> Self {
+        Self { body, pose, to_object: pose.inverse(), found, queries: 0, meter }
     }
 
     /// Lower bound of the distance of what is in a ball, by its centre in object coordinates; `None` if that need not be looked
@@ -113,7 +121,7 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
         }
         // Farther than matters now, so that it sleeps for a while.
         let mut nearest = Nearest::within(limit.max(EXACT_UP_TO));
-        let mut query = ObjectQuery::new(self.body, self.pose, &mut nearest);
+        let mut query = ObjectQuery::new(self.body, self.pose, &mut nearest, self.meter);
         look(&mut query);
         self.queries += query.queries;
         track.note(other, nearest.distance);
@@ -155,11 +163,15 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
         });
     }
 
-    /// A triangle in object coordinates. It is halved where its bounding ball alone does not tell.
+    /// A triangle in object coordinates. It is halved where its bounding ball alone does not tell. What is found is of no use
+    /// where the meter stops the queries: the caller asks it next.
     fn triangle(&mut self, triangle: [Point; 3], obstacle: Obstacle) {
         let mut waiting = heapless::Vec::<[Point; 3], { MAX_HALVINGS + 1 }>::new();
         let _ = waiting.push(triangle);
         while let Some([a, b, c]) = waiting.pop() {
+            if self.meter.is_some_and(|meter| meter.check_with(self.queries).is_err()) {
+                return;
+            }
             let centre = Point::from((a.coords + b.coords + c.coords) / 3.0);
             let radius = [a, b, c].iter().map(|corner| (corner - centre).norm()).fold(0.0, f32::max);
             if self.bound(&centre, radius, obstacle).is_none() {

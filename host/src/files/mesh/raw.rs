@@ -7,6 +7,10 @@ use super::super::{FileError, Place};
 use super::MeshFile;
 use super::polygon::Triangulator;
 
+/// Most vertices and face corners of a mesh that uses parts of its file many times, so that a short file could require any
+/// amount of memory: more than the command takes, and 0.2 GB.
+pub(super) const MOST_REPEATED: usize = 16_000_000;
+
 /// Vertices and polygons of a file, unchecked.
 #[derive(Default)]
 pub(crate) struct RawMesh {

@@ -4,22 +4,26 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion};
-use urdf_rs::{Geometry, Link, Robot};
+use quick_xml::Reader;
+use quick_xml::events::Event;
+use urdf_rs::{Geometry, Joint, Robot};
 
 use super::super::locate::locate;
 use super::super::source::{Format, MESHES, Source};
 use super::super::{FileError, Place};
 use super::MeshFile;
-use super::raw::RawMesh;
+use super::raw::{MOST_REPEATED, RawMesh};
 
 /// Sides of a circle.
 const SIDES: usize = 48;
-/// Most vertices and face corners of all links together, since a short file may name a large mesh many times.
-const MOST: usize = 100_000_000;
+/// Greatest depth of elements within elements: those of a robot are five deep, and extensions of simulators not much more. The
+/// parsers take time that grows with the square of the depth.
+const DEEPEST: usize = 64;
 
 pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
     let whole = |reason: String| source.malformed(Place::Whole, reason);
     let text = std::str::from_utf8(&source.bytes).map_err(|error| whole(error.to_string()))?;
+    check_depth(text).map_err(whole)?;
     let robot = urdf_rs::read_from_string(text).map_err(|error| whole(in_line(&error.to_string())))?;
     if robot.links.is_empty() {
         return Err(whole("it has no links".into()));
@@ -32,12 +36,13 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
     }
     let mut mesh = RawMesh::default();
     let mut without_visual = Vec::new();
+    let mut tree = Tree::of(&robot);
     for link in &robot.links {
         // A link that was asked for is in its own frame, and all links are in that of the root.
         let pose = match &source.link {
             Some(name) if *name != link.name => continue,
             Some(_) => Isometry3::identity(),
-            None => in_root(&robot, link).map_err(whole)?,
+            None => tree.pose(&link.name).map_err(whole)?,
         };
         let shapes: Vec<_> = if link.visual.is_empty() {
             link.collision.iter().map(|shape| (&shape.origin, &shape.geometry)).collect()
@@ -52,8 +57,8 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
                 source.malformed(Place::Part(format!("link {:?}", link.name)), in_line(&reason))
             };
             add(&mut mesh, geometry, &(pose * isometry(origin)), source).map_err(part)?;
-            if mesh.size() > MOST {
-                return Err(FileError::TooLarge { path: source.path.into(), most: MOST });
+            if mesh.size() > MOST_REPEATED {
+                return Err(FileError::TooLarge { path: source.path.into(), most: MOST_REPEATED });
             }
         }
     }
@@ -74,18 +79,55 @@ fn isometry(pose: &urdf_rs::Pose) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw))
 }
 
-/// The pose of a link in the frame of the root, with all joints at zero.
-fn in_root(robot: &Robot, link: &Link) -> Result<Isometry3<f64>, String> {
-    let joints: HashMap<_, _> = robot.joints.iter().map(|joint| (joint.child.link.as_str(), joint)).collect();
-    let (mut pose, mut name, mut seen) = (Isometry3::identity(), link.name.as_str(), HashSet::new());
-    while let Some(joint) = joints.get(name) {
-        if !seen.insert(name) {
-            return Err(format!("the joints form a loop at the link {name:?}"));
+/// Errs if elements are nested too deep.
+fn check_depth(text: &str) -> Result<(), String> {
+    let mut reader = Reader::from_str(text);
+    let mut depth = 0_usize;
+    loop {
+        match reader.read_event().map_err(|error| error.to_string())? {
+            Event::Start(_) if depth == DEEPEST => {
+                return Err(format!("its elements are nested more than {DEEPEST} deep"));
+            }
+            Event::Start(_) => depth += 1,
+            Event::End(_) => depth = depth.saturating_sub(1),
+            Event::Eof => return Ok(()),
+            _ => {}
         }
-        pose = isometry(&joint.origin) * pose;
-        name = &joint.parent.link;
     }
-    Ok(pose)
+}
+
+/// The joints, and the poses of links in the frame of the root with all joints at zero, as far as they are known.
+struct Tree<'a> {
+    joints: HashMap<&'a str, &'a Joint>,
+    poses: HashMap<&'a str, Isometry3<f64>>,
+}
+
+impl<'a> Tree<'a> {
+    fn of(robot: &'a Robot) -> Self {
+        let joints = robot.joints.iter().map(|joint| (joint.child.link.as_str(), joint)).collect();
+        Self { joints, poses: HashMap::new() }
+    }
+
+    /// The pose of a link. Those of all links above it are kept, so that a long chain is walked once.
+    fn pose(&mut self, link: &'a str) -> Result<Isometry3<f64>, String> {
+        let (mut above, mut name, mut seen) = (Vec::new(), link, HashSet::new());
+        let mut pose = loop {
+            if let Some(pose) = self.poses.get(name) {
+                break *pose;
+            }
+            let Some(joint) = self.joints.get(name) else { break Isometry3::identity() };
+            if !seen.insert(name) {
+                return Err(format!("the joints form a loop at the link {name:?}"));
+            }
+            above.push((name, *joint));
+            name = &joint.parent.link;
+        };
+        for (name, joint) in above.into_iter().rev() {
+            pose *= isometry(&joint.origin);
+            self.poses.insert(name, pose);
+        }
+        Ok(pose)
+    }
 }
 
 /// Adds a shape to the mesh.

@@ -2,9 +2,10 @@
 
 use gltf::Accessor;
 use gltf::accessor::{DataType, Dimensions};
+use std::rc::Rc;
 
 /// The positions of a primitive's vertices.
-pub(super) fn positions(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<[f32; 3]>, String> {
+pub(super) fn positions(accessor: &Accessor<'_>, buffers: &[Rc<Vec<u8>>]) -> Result<Vec<[f32; 3]>, String> {
     if (accessor.data_type(), accessor.dimensions()) != (DataType::F32, Dimensions::Vec3) {
         return Err("its POSITION is not three floats".into());
     }
@@ -13,7 +14,7 @@ pub(super) fn positions(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<
 }
 
 /// The indices of a primitive.
-pub(super) fn indices(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Vec<u32>, String> {
+pub(super) fn indices(accessor: &Accessor<'_>, buffers: &[Rc<Vec<u8>>]) -> Result<Vec<u32>, String> {
     if accessor.dimensions() != Dimensions::Scalar {
         return Err("its indices are not single numbers".into());
     }
@@ -32,7 +33,7 @@ pub(super) fn indices(accessor: &Accessor<'_>, buffers: &[Vec<u8>]) -> Result<Ve
 /// Iterates over the bytes of the items, each of `size` bytes.
 fn items<'a>(
     accessor: &Accessor<'_>,
-    buffers: &'a [Vec<u8>],
+    buffers: &'a [Rc<Vec<u8>>],
     size: usize,
 ) -> Result<impl Iterator<Item = &'a [u8]>, String> {
     let name = format!("accessor {}", accessor.index());

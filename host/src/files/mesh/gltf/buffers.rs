@@ -1,6 +1,9 @@
 //! The buffers of a glTF file.
 
+use std::collections::HashMap;
 use std::fs;
+use std::path::PathBuf;
+use std::rc::Rc;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -11,19 +14,24 @@ use percent_encoding::percent_decode_str;
 use super::super::super::source::Source;
 use super::super::super::{FileError, Place};
 
+/// Files that were read. Several buffers can name one file, which must not take its memory as often.
+type Files = HashMap<PathBuf, Rc<Vec<u8>>>;
+
 /// Reads every buffer: from the GLB itself, from a data URI, or from a file beside the glTF.
 pub(super) fn read(
     source: &Source<'_>,
     document: &Document,
     blob: Option<Vec<u8>>,
-) -> Result<Vec<Vec<u8>>, FileError> {
-    let mut blob = blob;
+) -> Result<Vec<Rc<Vec<u8>>>, FileError> {
+    let (mut blob, mut files) = (blob, Files::new());
     let mut buffers = Vec::new();
     for buffer in document.buffers() {
         let place = || Place::Part(format!("buffer {}", buffer.index()));
         let bytes = match buffer.source() {
-            Location::Bin => blob.take().ok_or("it has no URI and the file has no binary part".to_string()),
-            Location::Uri(uri) => from_uri(source, uri),
+            Location::Bin => {
+                blob.take().map(Rc::new).ok_or("it has no URI and the file has no binary part".to_string())
+            }
+            Location::Uri(uri) => from_uri(source, uri, &mut files),
         }
         .map_err(|reason| source.malformed(place(), reason))?;
         if bytes.len() < buffer.length() {
@@ -35,13 +43,14 @@ pub(super) fn read(
     Ok(buffers)
 }
 
-fn from_uri(source: &Source<'_>, uri: &str) -> Result<Vec<u8>, String> {
+fn from_uri(source: &Source<'_>, uri: &str, files: &mut Files) -> Result<Rc<Vec<u8>>, String> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (kind, payload) = data.split_once(',').ok_or("its data URI has no comma")?;
         if !kind.ends_with(";base64") {
             return Err("its data URI is not base64".into());
         }
-        return STANDARD.decode(payload).map_err(|e| format!("its data URI is not base64: {e}"));
+        let bytes = STANDARD.decode(payload).map_err(|e| format!("its data URI is not base64: {e}"))?;
+        return Ok(Rc::new(bytes));
     }
     if uri.contains("://") {
         return Err(format!("its URI {uri} is remote, and nothing is fetched from the network"));
@@ -52,5 +61,12 @@ fn from_uri(source: &Source<'_>, uri: &str) -> Result<Vec<u8>, String> {
     if !path.is_file() {
         return Err(format!("its file {} is missing: keep it beside the glTF", path.display()));
     }
-    fs::read(&path).map_err(|e| format!("its file {} cannot be read: {e}", path.display()))
+    let unreadable = |e| format!("its file {} cannot be read: {e}", path.display());
+    let known = fs::canonicalize(&path).map_err(unreadable)?;
+    if let Some(bytes) = files.get(&known) {
+        return Ok(Rc::clone(bytes));
+    }
+    let bytes = Rc::new(fs::read(&path).map_err(unreadable)?);
+    files.insert(known, Rc::clone(&bytes));
+    Ok(bytes)
 }

@@ -15,10 +15,8 @@ use nalgebra::{Matrix4, Point3};
 use super::super::source::Source;
 use super::super::{FileError, Place};
 use super::RawMesh;
-
-/// Largest number of vertices and face corners. Many nodes can use one mesh, so a small file could require any amount
-/// of memory.
-const MOST: usize = 100_000_000;
+use super::raw::MOST_REPEATED;
+use std::rc::Rc;
 
 pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
     let malformed = |reason: String| source.malformed(Place::Whole, reason);
@@ -92,7 +90,7 @@ fn reason(error: &gltf::Error) -> String {
 
 struct Scene<'a> {
     source: &'a Source<'a>,
-    buffers: Vec<Vec<u8>>,
+    buffers: Vec<Rc<Vec<u8>>>,
     mesh: RawMesh,
     /// Number of primitives that are points or lines.
     others: usize,
@@ -164,8 +162,10 @@ impl Scene<'_> {
                 first: 0,
             });
         }
-        if self.mesh.size() + positions.len() + 3 * indices.len() > MOST {
-            return Err(FileError::TooLarge { path: self.source.path.into(), most: MOST });
+        // Of a mesh that is used once, each vertex and each corner has bytes of its own in a buffer.
+        let most = MOST_REPEATED.max(self.buffers.iter().map(|buffer| buffer.len()).sum());
+        if self.mesh.size() + positions.len() + 3 * indices.len() > most {
+            return Err(FileError::TooLarge { path: self.source.path.into(), most });
         }
 
         let first = self.mesh.vertices.len() as i64;
