@@ -19,6 +19,7 @@ KNOWN = [
      "core's sort halves a range at most 2 log2(n) times, then changes to heapsort; n is less than 2^24"),
     (r"core::slice::sort::shared::pivot::median3_rec::<", 8, "core's sort looks at an eighth of a range each time: log8(n)"),
     (r"core::slice::sort::select::median_of_medians::<", 8, "core's selection goes on in at most a twelfth of a range: log12(n)"),
+    (r"Threads>::join", 1, "a part of a call that runs on a second thread has no parts of its own"),
     (r"core::str::slice_error_fail", 1, "core's panic; the two differ in const only"),
     (r"core::fmt|<dyn core::fmt", 2,
      "a message prints an error, which prints numbers: no type prints itself, so that each function stands there once, and"

@@ -83,8 +83,8 @@
 // Terms of these macros: upper bounds of the growth of the queries per vertex, triangle, sample, voxel, point, pose,
 // scene point, node, waypoint and block.
 #define HANGPOSE_OBJECT_BYTES_AT_LEAST 52224
-#define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 336
-#define HANGPOSE_OBJECT_BYTES_WORK_EACH_VERTEX 24
+#define HANGPOSE_OBJECT_BYTES_EACH_SAMPLE 348
+#define HANGPOSE_OBJECT_BYTES_WORK_EACH_VERTEX 28
 #define HANGPOSE_OBJECT_BYTES_EACH_TRIANGLE 100
 #define HANGPOSE_OBJECT_BYTES_WORK_EACH_TRIANGLE 80
 #define HANGPOSE_OBJECT_BYTES_EACH_VOXEL 4
@@ -94,7 +94,7 @@
 #define HANGPOSE_SUPPORTER_BYTES_MANY 17408
 #define HANGPOSE_SUPPORTER_BYTES_MANY_EACH_POINT 293
 #define HANGPOSE_PREDICT_BYTES_AT_LEAST 46080
-#define HANGPOSE_PREDICT_BYTES_EACH_POINT 14
+#define HANGPOSE_PREDICT_BYTES_EACH_POINT 27
 #define HANGPOSE_PREDICT_BYTES_EACH_POSE 432
 #define HANGPOSE_PLAN_BYTES_AT_LEAST 1050624
 #define HANGPOSE_PLAN_BYTES_EACH_POINT 21
@@ -102,7 +102,7 @@
 #define HANGPOSE_PLAN_BYTES_EACH_NODE 218
 #define HANGPOSE_PLAN_BYTES_EACH_WAYPOINT 32
 #define HANGPOSE_REACHABLE_BYTES_AT_LEAST 1050624
-#define HANGPOSE_REACHABLE_BYTES_EACH_POINT 21
+#define HANGPOSE_REACHABLE_BYTES_EACH_POINT 27
 #define HANGPOSE_REACHABLE_BYTES_EACH_POSE 488
 #define HANGPOSE_REACHABLE_BYTES_EACH_SCENE_POINT 64
 #define HANGPOSE_REACHABLE_BYTES_EACH_NODE 218
@@ -374,6 +374,27 @@ typedef struct hangpose_monitor {
   // Private to the library.
   uint64_t words[4];
 } hangpose_monitor;
+
+// A part of a call: to be called once with the argument that comes with it.
+typedef void (*hangpose_task)(void *argument);
+
+// Runs `first(first_argument)` and `second(second_argument)`, at the same time where that is possible, and returns when both have
+// returned. `context` is that of hangpose_threads.
+typedef void (*hangpose_join)(void *context,
+                              hangpose_task first,
+                              void *first_argument,
+                              hangpose_task second,
+                              void *second_argument);
+
+// A second thread of the caller's, which the library uses but neither starts nor ends by itself. Results are the same without it.
+typedef struct hangpose_threads {
+  // sizeof(hangpose_threads).
+  uint32_t struct_size;
+  // Runs two functions at the same time. Several calls that use the monitor may call it at once.
+  hangpose_join join;
+  // Given to `join` as it is; may be null.
+  void *context;
+} hangpose_threads;
 
 // Result of the analysis of an object.
 typedef struct hangpose_object_info {
@@ -1402,6 +1423,12 @@ uint32_t hangpose_monitor_is_cancelled(const struct hangpose_monitor *monitor);
 // Returns the progress of the call that uses this monitor, from 0 to 1; 0 if the monitor is null or was never
 // initialised.
 float hangpose_monitor_progress(const struct hangpose_monitor *monitor);
+
+// Lends the calls that use `monitor` a second thread, until hangpose_monitor_init. `threads` must stay where it is and as it is until
+// then. No call may be using the monitor. Returns HANGPOSE_OK, or an error.
+hangpose_status hangpose_monitor_use_threads(struct hangpose_monitor *monitor,
+                                             const struct hangpose_threads *threads,
+                                             struct hangpose_detail *detail);
 
 // Analyses `mesh` in `memory` and sets `*object` to the result, which stays in `memory`. `memory_size` is at least
 // hangpose_object_bytes for the size of `mesh` and for `params`. `mesh`, its arrays and `params` are needed during

@@ -33,6 +33,7 @@ macro_rules! sized {
 sized!(
     hangpose_params,
     hangpose_monitor,
+    hangpose_threads,
     hangpose_detail,
     hangpose_limits,
     hangpose_mesh,

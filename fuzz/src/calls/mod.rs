@@ -9,7 +9,7 @@ use crate::draw::Draw;
 use crate::memory::Block;
 use given::{Sized, reached};
 use hangpose_ffi::*;
-use std::ffi::CStr;
+use std::ffi::{CStr, c_void};
 use std::fmt::Write;
 use std::ptr::{null, null_mut};
 
@@ -18,7 +18,24 @@ const MOST_CALLS: usize = 24;
 /// Most bytes for a call. One that needs more is given less, and must say so.
 const MOST_BYTES: usize = 8 << 20;
 /// Work limits of calls: a few milliseconds.
-const WORK: [u64; 5] = [4_000, 20_000, 500, 10, 0];
+const WORK: [u64; 5] = [WITH_THREADS, 20_000, 500, 10, 0];
+/// The work limit of calls that may use a second thread.
+const WITH_THREADS: u64 = 4_000;
+
+/// Stands for two threads: the second part is done before the first begins.
+unsafe extern "C" fn second_first(
+    _: *mut c_void,
+    first: hangpose_task,
+    first_argument: *mut c_void,
+    second: hangpose_task,
+    second_argument: *mut c_void,
+) {
+    // SAFETY: the library gives functions with their arguments.
+    unsafe {
+        second.expect("a function")(second_argument);
+        first.expect("a function")(first_argument);
+    }
+}
 
 /// A model, in memory of its own.
 struct Model<T> {
@@ -35,6 +52,7 @@ struct Program<'a> {
     offset: usize,
     params: hangpose_params,
     monitor: hangpose_monitor,
+    threads: hangpose_threads,
     objects: Vec<Model<hangpose_object>>,
     supporters: Vec<Model<hangpose_supporter>>,
     volumes: Vec<Model<hangpose_volume>>,
@@ -60,6 +78,7 @@ impl<'a> Program<'a> {
             offset,
             params: Sized::sized(),
             monitor: Sized::sized(),
+            threads: hangpose_threads { join: Some(second_first), ..Sized::sized() },
             objects: Vec::new(),
             supporters: Vec::new(),
             volumes: Vec::new(),
@@ -160,6 +179,12 @@ impl<'a> Program<'a> {
         // SAFETY: the pointer leads to a monitor that no call uses.
         let status = unsafe { hangpose_monitor_init(&mut self.monitor, size, limit, null_mut()) };
         assert_eq!(status, HANGPOSE_OK);
+        if limit == WITH_THREADS {
+            // SAFETY: both stay where they are while the program runs.
+            let status =
+                unsafe { hangpose_monitor_use_threads(&mut self.monitor, &self.threads, null_mut()) };
+            assert_eq!(status, HANGPOSE_OK);
+        }
     }
 
     fn use_monitor(&mut self) {
@@ -182,6 +207,18 @@ impl<'a> Program<'a> {
             if self.draw.one_in(8) {
                 hangpose_monitor_cancel(&mut self.monitor);
             }
+            let mut threads = self.threads;
+            let (mut size, mut at) = (threads.struct_size, &raw const threads);
+            match self.draw.below(4) {
+                0 => at = null(),
+                1 => threads.join = None,
+                2 => size += self.draw.below(9) as u32,
+                _ => {}
+            }
+            threads.struct_size = size;
+            self.call("monitor_use_threads", |_, detail| {
+                hangpose_monitor_use_threads(&mut monitor, at, detail)
+            });
             hangpose_monitor_cancel(null_mut());
             assert_eq!((hangpose_monitor_is_cancelled(null()), hangpose_monitor_progress(null())), (0, 0.0));
         }
