@@ -207,15 +207,14 @@ impl<'a> Program<'a> {
             if self.draw.one_in(8) {
                 hangpose_monitor_cancel(&mut self.monitor);
             }
-            let mut threads = self.threads;
-            let (mut size, mut at) = (threads.struct_size, &raw const threads);
-            match self.draw.below(4) {
-                0 => at = null(),
-                1 => threads.join = None,
-                2 => size += self.draw.below(9) as u32,
-                _ => {}
-            }
-            threads.struct_size = size;
+            let case = self.draw.below(4);
+            let wrong = if case == 2 { self.draw.below(9) as u32 } else { 0 };
+            let threads = hangpose_threads {
+                struct_size: self.threads.struct_size + wrong,
+                join: self.threads.join.filter(|_| case != 1),
+                ..self.threads
+            };
+            let at = if case == 0 { null() } else { &raw const threads };
             self.call("monitor_use_threads", |_, detail| {
                 hangpose_monitor_use_threads(&mut monitor, at, detail)
             });
