@@ -8,7 +8,6 @@ help:
 	@echo "make book     build the book in build/book and check all that it says"
 	@echo "make test     run all checks and tests"
 	@echo "make fuzz     run the fuzz targets, T seconds in all: [T=60]"
-	@echo "make trust    check the supply chain and fuzz for five minutes"
 	@echo "make bench    measure time and memory, also of other libraries, and write docs/PERFORMANCE.md [PEER=peer.py] [MESHES=folder]"
 	@echo "make profile  show where the time goes: build/profile.svg and build/profile.txt"
 	@echo "make peer     compare poses with another implementation: PEER=peer.py MESHES=folder"
@@ -21,8 +20,8 @@ help:
 	@echo "make install  install the libraries, the headers and the command: [PREFIX=/usr/local] [DESTDIR=...]"
 	@echo "make deb      build the Debian packages libhangpose3, libhangpose-dev and hangpose in build/"
 	@echo "make dist     build a release in build/dist/: archives for x86-64 and aarch64, packages, checksums"
-	@echo "make embedded  run the C library on a Cortex-M7 and on aarch64 under qemu: with the bits of a desktop"
-	@echo "make trust    run the long checks of docs/TRUST.md: the same bits on every processor, build and interface"
+	@echo "make embedded run the C library on a Cortex-M7 and on aarch64 under qemu: with the bits of a desktop"
+	@echo "make trust    run the long checks of docs/TRUST.md: the same bits everywhere, cancels, the supply chain, fuzzing"
 	@echo "make abi      store the binary interface of this version in ffi/abi/"
 	@echo "make samples  regenerate samples/"
 	@echo "make header   regenerate include/hangpose.h from ffi/"
@@ -81,7 +80,7 @@ fuzz:
 trust: embedded
 	@scripts/setup.sh trust
 	embedded/same_bits.sh
-	cargo run --release -p host-tests --bin cancel -- --limit 1
+	cargo run --release -p host-tests --bin cancel -- --limit 2
 	scripts/supply.sh
 	scripts/reproducible.sh
 	$(MAKE) --no-print-directory fuzz T=300
