@@ -80,7 +80,7 @@ fuzz:
 trust: embedded
 	@scripts/setup.sh trust
 	embedded/same_bits.sh
-	cargo run --release -p host-tests --bin cancel -- --limit 2
+	cargo run --release -p host-tests --bin cancel -- --limit 5
 	scripts/supply.sh
 	scripts/reproducible.sh
 	$(MAKE) --no-print-directory fuzz T=300
