@@ -423,6 +423,8 @@ impl From<PlanError> for Failure {
             // The request of a caller was checked before.
             PlanError::Request(error) => Self::Request { error, spot: Place::of("request").into() },
             PlanError::Motion(error) => error.into(),
+            // Of a caller it is checked field by field before.
+            PlanError::Goal => Self::Pose { spot: Place::of("goal").into() },
         }
     }
 }

@@ -15,7 +15,7 @@ use hangpose::motion::{
     Capsule, Gripper, Motion, Plan, Task, Waypoint, plan, plan_bytes, predict_reachable, reachable_bytes,
 };
 use hangpose::{Candidates, CentreOfMass, Monitor, Params};
-use nalgebra::{Quaternion, UnitQuaternion};
+use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 use std::fmt::Write;
 
 /// Rays and distance queries of a call: about a millisecond.
@@ -45,6 +45,8 @@ struct Asked {
     symmetries: Option<Vec<Symmetry>>,
     poses: usize,
     goal: Pose,
+    /// What makes the goal of a path one that is none.
+    beyond: [f32; 3],
     start: Option<Pose>,
     take_off: bool,
     parts: Vec<Capsule>,
@@ -122,7 +124,9 @@ fn kinds(draw: &mut Draw, plain: Kinds) -> Kinds {
 fn pose(draw: &mut Draw) -> Pose {
     let [x, y, z, w] = [draw.share(), draw.share(), draw.share(), draw.share()];
     let rotation = UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 1e-6).unwrap_or_default();
-    Pose::from_parts(Vector::from(draw.place(0.1)).into(), rotation)
+    // A hung object and a release may be anywhere, but somewhere.
+    let far = draw.pick(&[0.1, 0.1, 0.1, 1.0, 1e3, 9e5]);
+    Pose::from_parts(Vector::from(draw.shares().map(|x| far * x)).into(), rotation)
 }
 
 /// Params of small models, valid in most cases.
@@ -187,6 +191,7 @@ impl Asked {
             symmetries: None,
             poses: 1 + draw.below(4),
             goal: pose(draw),
+            beyond: draw.place(0.0),
             start: None,
             take_off: draw.one_in(4),
             parts: Vec::new(),
@@ -391,7 +396,8 @@ fn answer(case: &Case, offset: usize) -> String {
     // Beyond what a motion may have, the memory is not asked for.
     let (scene, nodes) = (asked.scene.len(), motion.nodes.min(1_000_000));
     let mut scratch = Block::new(plan_bytes(&limits, scene, nodes), offset);
-    let goal = HangingPose { pose: asked.goal, ..HangingPose::default() };
+    let pose = Translation3::from(Vector::from(asked.beyond)) * asked.goal;
+    let goal = HangingPose { pose, ..HangingPose::default() };
     let outcome = match plan(&task, &goal, &mut waypoints, &mut ask, scratch.memory(), &monitor) {
         Ok(plan) => {
             check_plan(&plan);

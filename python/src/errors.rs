@@ -181,6 +181,7 @@ pub(crate) fn plan(py: Python<'_>, error: &PlanError) -> PyErr {
         PlanError::Params(error) => params(py, error),
         PlanError::Request(error) => request(py, error),
         PlanError::Motion(error) => motion(py, error),
+        PlanError::Goal => value(py, "pose", &text),
         PlanError::OutOfMemory(_) => value(py, "memory", &text),
         PlanError::Cancelled => cancelled(py),
         PlanError::NoDistanceField { hung: None } => value(py, "object", &text),

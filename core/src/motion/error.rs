@@ -1,6 +1,7 @@
 //! Why nothing can be planned.
 
 use super::task::MotionError;
+use crate::geometry::MAX_COORDINATE;
 use crate::hanging::{PredictError, RequestError};
 use crate::memory::OutOfMemory;
 use crate::monitor::Unfinished;
@@ -16,6 +17,8 @@ pub enum PlanError {
     Request(RequestError),
     /// The motion is invalid.
     Motion(MotionError),
+    /// The goal, its rest pose included, is too far away or not a number, or its rotation is not a unit quaternion.
+    Goal,
     /// The memory is too small.
     OutOfMemory(OutOfMemory),
     /// The object, or the one with this index that hangs already, was analysed without [`voxels`](crate::Params::voxels).
@@ -86,6 +89,9 @@ impl fmt::Display for PlanError {
             Self::Params(error) => error.fmt(f),
             Self::Request(error) => error.fmt(f),
             Self::Motion(error) => error.fmt(f),
+            Self::Goal => {
+                write!(f, "the goal needs positions within ±{MAX_COORDINATE} metres and unit quaternions")
+            }
             Self::OutOfMemory(error) => error.fmt(f),
             Self::Cancelled => f.write_str("the search was cancelled"),
             Self::NoDistanceField { hung: None } => f.write_str(

@@ -16,7 +16,7 @@ use super::route::Route;
 use super::search::{GOAL, Outcome, START, Search};
 use super::shorten::shorten;
 use super::space::{Moving, Obstacles, Space};
-use super::task::Task;
+use super::task::{Task, is_rigid};
 use super::timing::set_times;
 use super::tree::{Metric, Tree};
 use super::written::Written;
@@ -81,6 +81,9 @@ pub(super) fn outline(
     task.params.validate()?;
     task.request.validate()?;
     task.motion.validate()?;
+    if !is_rigid(&goal.pose) || goal.rest.is_some_and(|rest| !is_rigid(&rest.pose)) {
+        return Err(PlanError::Goal);
+    }
     let needed = plan_bytes(&task.supporter.limits(), task.request.scene.len(), task.motion.nodes);
     let arena = Arena::new(memory, needed)?;
     let body = body_of(task)?;

@@ -81,11 +81,8 @@ impl Motion<'_> {
     /// Checks every value.
     pub fn validate(&self) -> Result<(), MotionError> {
         let is_usable = |vector: &[f32; 3]| vector.iter().all(|x| x.abs() <= MAX_COORDINATE);
-        if let Some(start) = self.start {
-            let length = start.rotation.coords.norm();
-            if !(is_usable(&start.translation.vector.into()) && (length - 1.0).abs() < 1e-3) {
-                return Err(MotionError::Start);
-            }
+        if self.start.is_some_and(|start| !is_rigid(&start)) {
+            return Err(MotionError::Start);
         }
         if let Some(gripper) = self.gripper {
             let is_valid = |part: &Capsule| {
@@ -129,6 +126,12 @@ impl Motion<'_> {
             None => Ok(()),
         }
     }
+}
+
+/// Whether a pose is a rigid motion to a place within the greatest coordinates.
+pub(super) fn is_rigid(pose: &Pose) -> bool {
+    let length = pose.rotation.coords.norm();
+    pose.translation.vector.iter().all(|x| x.abs() <= MAX_COORDINATE) && (length - 1.0).abs() < 1e-3
 }
 
 impl Default for Motion<'_> {

@@ -548,3 +548,18 @@ fn a_start_out_of_all_reach_has_no_path() {
     let failure = Scene::on_peg().plan(motion).err();
     assert_eq!(failure, Some(PlanFailure::BudgetUsedUp { samples: 3 }));
 }
+
+#[test]
+fn a_goal_that_is_no_pose_is_named() {
+    let scene = Scene::on_peg();
+    scene.analyse(|object, supporter, params| {
+        let task = Task { object, supporter, request: &Request::ANY, params, motion: Motion::DEFAULT };
+        let mut memory = vec![0; plan_bytes(&supporter.limits(), 0, task.motion.nodes)];
+        for far in [f32::NAN, f32::INFINITY, 2e6] {
+            let pose = Pose::translation(0.0, far, 0.0);
+            let goal = HangingPose { pose, ..HangingPose::default() };
+            let planned = plan(&task, &goal, &mut [], &mut |_| true, &mut memory, &Monitor::new());
+            assert_eq!(planned.err(), Some(PlanError::Goal), "{far}");
+        }
+    });
+}

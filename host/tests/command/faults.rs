@@ -112,8 +112,16 @@ fn a_file_that_changes_while_it_is_read_is_an_input_like_any_other() {
     let scene = Scene::new();
     let (whole, changing) = (std::fs::read(sample("hook.ply")).unwrap(), scene.path("changing.ply"));
     std::fs::write(&changing, &whole).unwrap();
+    /// Ends the changes also when the test fails.
+    struct Over<'a>(&'a AtomicBool);
+    impl Drop for Over<'_> {
+        fn drop(&mut self) {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
     let is_over = AtomicBool::new(false);
     std::thread::scope(|scope| {
+        let _over = Over(&is_over);
         scope.spawn(|| {
             // It is cut to half and grows again, thousands of times a second.
             let file = std::fs::File::options().write(true).open(&changing).unwrap();
@@ -137,7 +145,6 @@ fn a_file_that_changes_while_it_is_read_is_an_input_like_any_other() {
                 other => panic!("{other:?}: {}", run.stderr),
             }
         }
-        is_over.store(true, Ordering::Relaxed);
         assert!(cut > 0, "no run met a file that was cut");
     });
 }

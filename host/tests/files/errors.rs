@@ -132,6 +132,8 @@ fn not_what_it_says() {
         &["element face: it lacks vertex_indices"],
     );
     bad_mesh("a.glb", "not a glb at all", &["re-export it as glb"]);
+    // Behind a byte order mark the crate subtracts from the length 0.
+    bad_mesh("a.glb", "\u{feff}glTF\x02\0\0\0\0\0\0\0\0", &["cannot be 0 bytes long"]);
     bad_mesh("a.gltf", GLTF_TRIANGLE.replace("\"mesh\":0", "\"mesh\":5"), &["nodes[0].mesh"]);
     bad_mesh(
         "a.gltf",

@@ -1,14 +1,14 @@
 //! The crop box that leaves room for what is behind the surfaces that images show.
 
 use super::CompletionSettings;
-use crate::geometry::{Aabb, Point, Pose, Vector};
+use crate::geometry::{Aabb, MAX_COORDINATE, Point, Pose, Vector};
 use crate::perception::depth::{DepthImage, Mask};
 
 /// Every so many pixels in both directions are looked at for how far back other images show something.
 const STRIDE: usize = 8;
 
 /// Box in world coordinates around what the images show and around the room behind it that a completion may fill; `None`
-/// if they show nothing up to the depth `max_depth`, metres. Behind the surface in an image there is room for an object as
+/// if they show nothing up to the depth `max_depth`, metres, or the room is not finite. Behind the surface in an image there is room for an object as
 /// deep as it appears narrow. `margin`, metres, is added on all sides; the truncation and two voxels suit a volume.
 ///
 /// Each image may have a mask that says which pixels count.
@@ -41,7 +41,9 @@ pub fn room<'a>(
         room = Some(room.map_or(both, |room| room.union(&both)));
     }
     let margin = Vector::repeat(margin);
-    room.map(|room| Aabb { min: room.min - margin, max: room.max + margin })
+    let room = room.map(|room| Aabb { min: room.min - margin, max: room.max + margin });
+    // Lengths of the settings may be larger than any room.
+    room.filter(|room| room.min.iter().chain(room.max.iter()).all(|x| x.is_finite()))
 }
 
 /// The points that an image shows, in camera coordinates, metres: those of every `stride`th pixel in both directions.
@@ -56,6 +58,8 @@ fn points<'a>(
         (0..height).step_by(stride).flat_map(move |v| (0..width).step_by(stride).map(move |u| [u, v]));
     pixels.filter_map(move |[u, v]| {
         let is_shown = mask.is_none_or(|mask| mask.holds(v as usize * width as usize + u as usize));
-        image.point(u, v).filter(|point| is_shown && point.z <= max_depth)
+        // A lens may be said to distort so much that a pixel looks nowhere.
+        let is_somewhere = |point: &Point| point.iter().all(|x| x.abs() <= MAX_COORDINATE);
+        image.point(u, v).filter(|point| is_shown && point.z <= max_depth && is_somewhere(point))
     })
 }

@@ -1,6 +1,7 @@
 use super::*;
 use crate::Stop;
-use crate::geometry::{Aabb, Point};
+use crate::geometry::{Aabb, Point, Pose};
+use crate::perception::depth::{DepthCamera, DepthImage};
 use crate::perception::isosurface::Isosurface;
 use crate::perception::test_views::{
     BALL_RADIUS, Distance, TORUS, View, around, ball, camera, look_from, torus,
@@ -236,5 +237,10 @@ fn the_room_holds_what_is_behind() {
     assert!((0..3).all(|i| (all.min[i] + BALL_RADIUS + 4.0 * VOXEL).abs() < VOXEL), "{all:?}");
     let views = seen_from([0.4, 0.0, 0.0], ball);
     let images = views.iter().map(|view| (view.image(), None));
-    assert!(room(images, &settings, 0.1, 0.0).is_none());
+    assert!(room(images.clone(), &settings, 0.1, 0.0).is_none());
+    // Nowhere, and larger than any number.
+    assert!(room(images.clone(), &settings, 1.0, f32::INFINITY).is_none());
+    let lens = DepthCamera::new([2, 2], [1e-30; 2], [0.5; 2], [1e30, 0.0, 0.0, 0.0, 0.0]).unwrap();
+    let image = DepthImage::new(lens, &[500; 4], 0.001, Pose::identity()).unwrap();
+    assert_eq!(room([(image, None)].into_iter(), &settings, 1.0, 0.0), None);
 }

@@ -20,17 +20,17 @@ use std::rc::Rc;
 
 pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
     let malformed = |reason: String| source.malformed(Place::Whole, reason);
+    let bytes = source.bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&source.bytes);
     // The crate subtracts the 12 bytes of the header from the declared length without a check.
-    if source.bytes.starts_with(b"glTF") {
-        match source.bytes.get(8..12).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize) {
+    if bytes.starts_with(b"glTF") {
+        match bytes.get(8..12).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as usize) {
             Some(length) if length < 12 => {
                 return Err(malformed(format!("a GLB cannot be {length} bytes long")));
             }
-            Some(length) if length <= source.bytes.len() => {}
+            Some(length) if length <= bytes.len() => {}
             Some(length) => {
-                let reason =
-                    format!("the header declares {length} bytes, but there are {}", source.bytes.len());
-                return Err(source.truncated(Place::Byte(source.bytes.len()), reason));
+                let reason = format!("the header declares {length} bytes, but there are {}", bytes.len());
+                return Err(source.truncated(Place::Byte(bytes.len()), reason));
             }
             None => {
                 return Err(
@@ -39,7 +39,6 @@ pub(super) fn read(source: &Source<'_>) -> Result<RawMesh, FileError> {
             }
         }
     }
-    let bytes = source.bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&source.bytes);
     let gltf::Gltf { document, blob } =
         gltf::Gltf::from_slice_without_validation(bytes).map_err(|e| malformed(reason(&e)))?;
     let document = validate(document).map_err(malformed)?;
