@@ -65,10 +65,7 @@ pub(super) fn sample(
 ) -> Result<(), Unfinished> {
     match params.candidates {
         Candidates::Sites => sites::sample(mesh, params.seed, points, normals, scratch, meter),
-        Candidates::Contacts => {
-            contacts::sample(mesh, params.seed, points, normals);
-            Ok(())
-        }
+        Candidates::Contacts => Ok(contacts::sample(mesh, params.seed, points, normals, meter)?),
     }
 }
 

@@ -75,6 +75,7 @@ impl<'s> Neighbourhood<'s> {
         self.is_pivot_at_contacts = Some(!contacts.is_empty());
         let pivot = self.odometer.pivot(state);
         let count = support.patches.len();
+        debug_assert!(self.sleeps.len() >= Support::sleepers(count));
         let (patches, groups) = self.sleeps.split_at_mut_checked(count).unwrap_or_default();
         for (sleep, position) in patches.iter_mut().zip(support.positions()) {
             sleep.restart(&before, &pivot, &position, 0.0);
@@ -120,6 +121,7 @@ impl<'s> Neighbourhood<'s> {
         let mut queries = 0;
         contacts.clear();
         let count = support.patches.len();
+        debug_assert!(self.sleeps.len() >= Support::sleepers(count));
         let (patches, groups) = self.sleeps.split_at_mut_checked(count).unwrap_or_default();
         for (group, group_sleep) in support.groups.iter().zip(groups) {
             let reading = self.odometer.reading(group_sleep.radius);

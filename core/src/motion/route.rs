@@ -87,6 +87,7 @@ impl<'s> Route<'s> {
         }
         self.places.copy_within(last..self.len, at);
         self.clearances.copy_within(last..self.len, at);
+        debug_assert!(between.len() + 1 == clearances.len() && first + clearances.len() == at);
         for (to, from) in self.places[first + 1..at].iter_mut().zip(between) {
             *to = *from;
         }

@@ -70,6 +70,7 @@ pub(crate) fn add<'s>(
     let points = scratch.unset::<Point>(most)?;
     // Index of the point that was seen, its own or that of the mirrored one, in the old tree and in the caller's cloud.
     let (sources, names) = (scratch.unset::<u32>(most)?, scratch.unset::<u32>(most)?);
+    debug_assert!(slots.tree().points().len() == count);
     for (to, from) in points.iter_mut().zip(slots.tree().points()) {
         *to = *from;
     }

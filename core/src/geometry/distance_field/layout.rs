@@ -1,6 +1,7 @@
 //! How fine the voxels are and which blocks hold bricks.
 
 use super::brick::{BLOCK, BRICK_NODES};
+use super::frame::Frame;
 use super::{BAND, Entry, raster};
 use crate::geometry::{Aabb, Point, Surface, Vector};
 use crate::memory::larger;
@@ -49,6 +50,19 @@ pub(super) struct Layout {
     pub(super) blocks: [u32; 3],
     /// Number of voxels along each axis.
     cells: [f32; 3],
+}
+
+/// A mesh, and which of the blocks around it hold bricks.
+#[derive(Clone, Copy)]
+pub(super) struct Bricks<'a> {
+    pub(super) surface: &'a Surface<'a>,
+    pub(super) layout: &'a Layout,
+    /// [`Entry`] of each block.
+    pub(super) grid: &'a [u32],
+    /// The block of each brick.
+    pub(super) places: &'a [u32],
+    /// Of the triangles of the surface.
+    pub(super) frames: &'a [Frame],
 }
 
 impl Layout {

@@ -25,7 +25,7 @@ use brick::{BLOCK, BRICK_NODES};
 use core::hint::black_box;
 use far::Far;
 use frame::Frame;
-use layout::Layout;
+use layout::{Bricks, Layout};
 
 /// Signed distances to a mesh around it, in object coordinates: an approximation of [`Surface::signed_distance`] by
 /// interpolation.
@@ -126,12 +126,12 @@ impl<'m> DistanceField<'m> {
             *frame = Frame::of(&layout.local(corners));
         }
         let (mut nearest, places) = nearest::Nearest::new(grid, bricks, &mut scratch)?;
-        nearest.seed(surface, &layout, grid, places, frames, meter)?;
-        nearest.spread(surface, &layout, grid, places, frames, meter)?;
+        let bricks = Bricks { surface, layout: &layout, grid, places, frames };
+        nearest.seed(&bricks, meter)?;
+        nearest.spread(&bricks, meter)?;
 
         let far_signs = scratch.slice::<u8>(grid.len())?;
-        let mesh = sign::Measured { surface, layout: &layout, grid, places, nearest: &nearest, frames };
-        sign::find(mesh, nodes, far_signs, scratch.scratch(), meter)?;
+        sign::find(&bricks, &nearest, nodes, far_signs, scratch.scratch(), meter)?;
         Far { layout: &layout, grid, nearest: &nearest, frames, signs: far_signs }.fill(scratch, meter)?;
         let Aabb { min, max } = surface.aabb();
         let aabb = Aabb { min: layout.in_voxels(&min).into(), max: layout.in_voxels(&max).into() };

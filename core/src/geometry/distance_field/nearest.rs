@@ -9,9 +9,9 @@ use super::brick::{
     STEP, compare, dilate, each,
 };
 use super::frame::Frame;
-use super::layout::Layout;
+use super::layout::{Bricks, Layout};
 use super::{Entry, raster};
-use crate::geometry::{Surface, Vector};
+use crate::geometry::Vector;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
 use core::ops::{Range, RangeInclusive};
@@ -70,28 +70,20 @@ impl<'s> Nearest<'s> {
     }
 
     /// Asks every triangle for the nodes within [`EXACT`] of it; a second thread takes half of the bricks.
-    pub(super) fn seed(
-        &mut self,
-        surface: &Surface,
-        layout: &Layout,
-        grid: &[u32],
-        places: &[u32],
-        frames: &[Frame],
-        meter: &mut Meter,
-    ) -> Result<(), Stop> {
+    pub(super) fn seed(&mut self, on: &Bricks, meter: &mut Meter) -> Result<(), Stop> {
+        let Bricks { layout, places, .. } = *on;
         let middle = if meter.has_threads() { places.len() / 2 } else { places.len() };
         // Bricks are numbered by layers of blocks along z.
         let border = places.get(middle).map_or(u32::MAX, |&block| layout.place(block as usize)[2]);
         let (distances, triangles) =
             (self.distances.split_at_mut(middle), self.triangles.split_at_mut(middle));
-        let all = Seeds { surface, layout, grid, frames };
         let mut front = Part { bricks: 0..middle, layers: 0..=border, nearest: (distances.0, triangles.0) };
         let mut back = Part {
             bricks: middle..places.len(),
             layers: border..=u32::MAX,
             nearest: (distances.1, triangles.1),
         };
-        meter.run_both(|meter| all.find(&mut front, meter), |meter| all.find(&mut back, meter), |_| false)?;
+        meter.run_both(|meter| front.seed(on, meter), |meter| back.seed(on, meter), |_| false)?;
         for (known, distances) in self.known.iter_mut().zip(self.distances.iter()) {
             *known = compare(distances, 0, |distance, _| distance <= EXACT * EXACT);
         }
@@ -102,15 +94,8 @@ impl<'s> Nearest<'s> {
     }
 
     /// Finds a near triangle for all other nodes, and takes the roots of the distances.
-    pub(super) fn spread(
-        &mut self,
-        surface: &Surface,
-        layout: &Layout,
-        grid: &[u32],
-        places: &[u32],
-        frames: &[Frame],
-        meter: &Meter,
-    ) -> Result<(), Stop> {
+    pub(super) fn spread(&mut self, on: &Bricks, meter: &Meter) -> Result<(), Stop> {
+        let Bricks { surface, layout, grid, places, frames } = *on;
         loop {
             self.share_all(layout, grid, places, meter)?;
             let mut changed = false;
@@ -284,14 +269,6 @@ impl<'s> Nearest<'s> {
     }
 }
 
-/// What nodes close to the mesh are seeded from.
-struct Seeds<'a> {
-    surface: &'a Surface<'a>,
-    layout: &'a Layout,
-    grid: &'a [u32],
-    frames: &'a [Frame],
-}
-
 /// Some of the bricks.
 struct Part<'a> {
     bricks: Range<usize>,
@@ -301,11 +278,11 @@ struct Part<'a> {
     nearest: (&'a mut [[f32; PADDED]], &'a mut [[u32; PADDED]]),
 }
 
-impl Seeds<'_> {
-    /// Asks every triangle for the nodes of a part of the bricks.
-    fn find(&self, part: &mut Part, meter: &Meter) -> Result<(), Stop> {
-        let Self { surface, layout, grid, frames } = *self;
-        let Part { bricks, layers, nearest: (distances, triangles) } = part;
+impl Part<'_> {
+    /// Asks every triangle for the nodes of these bricks.
+    fn seed(&mut self, on: &Bricks, meter: &Meter) -> Result<(), Stop> {
+        let Bricks { surface, layout, grid, frames, .. } = *on;
+        let Self { bricks, layers, nearest: (distances, triangles) } = self;
         if distances.is_empty() {
             return Ok(());
         }

@@ -9,7 +9,7 @@ use super::brick::{
     ACROSS, ALL, BESIDE, BRICK_NODES, DIAGONAL, HIGH, LOW, Nodes, STEP, compare, coordinates, each,
 };
 use super::frame::Frame;
-use super::layout::Layout;
+use super::layout::{Bricks, Layout};
 use super::nearest::Nearest;
 use super::{Entry, QUANTUM};
 use crate::geometry::{Point, Surface, Vector};
@@ -42,12 +42,14 @@ pub(super) const fn scratch_bytes(bricks: usize, blocks: usize) -> usize {
 
 /// Finds all sides: writes the signed distances of the bricks' nodes to `nodes` and the sides of the other blocks to `far`.
 pub(super) fn find(
-    Measured { surface, layout, grid, places, nearest, frames }: Measured,
+    bricks: &Bricks,
+    nearest: &Nearest,
     nodes: &mut [i16],
     far: &mut [u8],
     mut scratch: Arena,
     meter: &Meter,
 ) -> Result<(), Unfinished> {
+    let Bricks { surface, layout, grid, places, frames } = *bricks;
     let bricks = places.len();
     let mut sides = Sides {
         surface,
@@ -75,17 +77,6 @@ pub(super) fn find(
     }
     sides.finish(nodes)?;
     Ok(())
-}
-
-/// A mesh whose distances are known, but not their signs.
-pub(super) struct Measured<'a> {
-    pub(super) surface: &'a Surface<'a>,
-    pub(super) layout: &'a Layout,
-    pub(super) grid: &'a [u32],
-    /// The block of each brick.
-    pub(super) places: &'a [u32],
-    pub(super) nearest: &'a Nearest<'a>,
-    pub(super) frames: &'a [Frame],
 }
 
 struct Sides<'a, 's> {

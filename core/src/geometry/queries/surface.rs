@@ -60,8 +60,11 @@ impl<'m> Surface<'m> {
         arena: &mut Arena<'m>,
         meter: &Meter,
     ) -> Result<Self, Unfinished> {
-        meter.check_cancelled()?;
-        let count = mesh.solid_triangles().count();
+        let mut count = 0;
+        for _ in mesh.solid_triangles() {
+            meter.check_at(count)?;
+            count += 1;
+        }
         let (triangles, _) = arena.unset::<Point>(3 * count)?.as_chunks_mut();
         let nodes = arena.unset::<Node>(Bvh::max_nodes(count))?;
         let dipoles = arena.unset::<Dipole>(Bvh::max_nodes(count))?;
@@ -69,6 +72,7 @@ impl<'m> Surface<'m> {
         let order = scratch.unset::<u32>(count)?;
         let solid = mesh.solid_triangles();
         for ((name, corners), triangle) in order.iter_mut().zip(triangles.iter_mut()).zip(solid) {
+            meter.check_at(triangle as usize)?;
             (*name, *corners) = (triangle, mesh.corners(triangle as usize));
         }
         let bvh = Bvh::build(order, triangles, nodes, meter)?;

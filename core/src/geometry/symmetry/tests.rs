@@ -37,7 +37,7 @@ fn symmetries(shape: &Shape, centre: Option<Point>) -> Vec<Symmetry> {
     )
     .unwrap();
     let (mut points, mut normals) = ([Point::origin(); 10_000], [Vector::zeros(); 10_000]);
-    sampling::scatter_into(&mesh, 0, &mut points, &mut normals);
+    sampling::scatter_into(&mesh, 0, &mut points, &mut normals, &Meter::unwatched()).unwrap();
     let centre = centre.or(mass.volume_centroid).unwrap();
     Symmetries::find(&mass.inertia, &centre, &field, &points, &Meter::unwatched())
         .unwrap()

@@ -38,8 +38,14 @@ pub(super) fn object_slots<'m>(arena: &mut Arena<'m>) -> Result<&'m mut [ObjectC
 }
 
 /// Draws independent samples: contacts keep their distance as they are found, so that the samples need not.
-pub(super) fn sample(mesh: &Mesh, seed: u64, points: &mut [Point], normals: &mut [Vector]) {
-    sampling::scatter_into(mesh, seed, points, normals);
+pub(super) fn sample(
+    mesh: &Mesh,
+    seed: u64,
+    points: &mut [Point],
+    normals: &mut [Vector],
+    meter: &Meter,
+) -> Result<(), Stop> {
+    sampling::scatter_into(mesh, seed, points, normals, meter)
 }
 
 /// Fills `slots` with the object's contacts, the deepest capture first. `Some` says why the search ended early.

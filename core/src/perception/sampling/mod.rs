@@ -7,7 +7,7 @@ mod falling;
 
 use crate::geometry::{Mesh, Point, Vector};
 use crate::memory::{Arena, OutOfMemory, array_bytes, larger, model_bytes};
-use crate::monitor::{Meter, Monitor, Unfinished};
+use crate::monitor::{Meter, Monitor, Stop, Unfinished};
 pub use crate::params::MAX_SAMPLES;
 use crate::random::Random;
 use cells::Cells;
@@ -113,7 +113,7 @@ pub(crate) fn sample_into(
     let count = points.len();
     meter.check_cancelled()?;
     let drawn = scratch.unset::<Candidate>(count * OVERSAMPLING)?;
-    let area = draw(mesh, seed, drawn.len(), |place, candidate| drawn[place] = candidate);
+    let area = draw(mesh, seed, drawn.len(), meter, |place, candidate| drawn[place] = candidate)?;
     // The largest radius that `count` disks on a plane of this area can have (section 3.1).
     let r_max = libm::sqrtf(area / (2.0 * libm::sqrtf(3.0) * count.max(1) as f32));
     let cells = Cells::sort(drawn, 2.0 * r_max, &mut scratch, meter)?;
@@ -126,7 +126,13 @@ pub(crate) fn sample_into(
 
 /// Draws points with the normals of their triangles uniformly by area, without a least distance, and in random order, so that
 /// any part of them covers the whole surface.
-pub(crate) fn scatter_into(mesh: &Mesh, seed: u64, points: &mut [Point], normals: &mut [Vector]) {
+pub(crate) fn scatter_into(
+    mesh: &Mesh,
+    seed: u64,
+    points: &mut [Point],
+    normals: &mut [Vector],
+    meter: &Meter,
+) -> Result<(), Stop> {
     let count = points.len();
     // Steps by about the golden section go through all places, and far from each other, if they have no divisor in common.
     let is_coprime = |&stride: &usize| {
@@ -137,10 +143,11 @@ pub(crate) fn scatter_into(mesh: &Mesh, seed: u64, points: &mut [Point], normals
         a == 1
     };
     let stride = (1..=(0.618 * count as f64) as usize).rev().find(is_coprime).unwrap_or(1);
-    draw(mesh, seed, count, |place, candidate| {
+    draw(mesh, seed, count, meter, |place, candidate| {
         let place = (place * stride) % count;
         (points[place], normals[place]) = candidate.on(mesh);
-    });
+    })?;
+    Ok(())
 }
 
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
@@ -159,9 +166,19 @@ impl Candidate {
 }
 
 /// Draws `count` candidates uniformly by area, tells them in the order of the triangles, and returns the area in m².
-fn draw(mesh: &Mesh, seed: u64, count: usize, mut tell: impl FnMut(usize, Candidate)) -> f32 {
+fn draw(
+    mesh: &Mesh,
+    seed: u64,
+    count: usize,
+    meter: &Meter,
+    mut tell: impl FnMut(usize, Candidate),
+) -> Result<f32, Stop> {
     let normal_of = |t: u32| crate::geometry::scaled_normal(&mesh.corners(t as usize));
-    let total: f64 = mesh.solid_triangles().map(|t| f64::from(normal_of(t).norm()) / 2.0).sum();
+    let mut total = 0.0_f64;
+    for (step, triangle) in mesh.solid_triangles().enumerate() {
+        meter.check_at(step)?;
+        total += f64::from(normal_of(triangle).norm()) / 2.0;
+    }
     let mut random = Random::new(seed);
     // One candidate in each of as many equal shares of the area, so that no part is left out by chance, at a random
     // place of the share, so that it makes no pattern with the order of the triangles.
@@ -170,7 +187,10 @@ fn draw(mesh: &Mesh, seed: u64, count: usize, mut tell: impl FnMut(usize, Candid
     let mut next = place(0, &mut random);
     let (mut covered, mut drawn) = (0.0, 0);
     let mut triangles = mesh.solid_triangles().peekable();
+    let mut step = 0;
     while let Some(triangle) = triangles.next() {
+        meter.check_at(step)?;
+        step += 1;
         let normal = normal_of(triangle);
         covered += f64::from(normal.norm()) / 2.0;
         let [a, b, c] = mesh.corners(triangle as usize);
@@ -183,7 +203,7 @@ fn draw(mesh: &Mesh, seed: u64, count: usize, mut tell: impl FnMut(usize, Candid
             next = place(drawn, &mut random);
         }
     }
-    total as f32
+    Ok(total as f32)
 }
 
 #[cfg(test)]
@@ -226,7 +246,7 @@ mod tests {
         let torus = test_shapes::torus(0.04, 0.01, 96, 32);
         for count in [1, 2, 100, 1000] {
             let (mut points, mut normals) = (vec![Point::origin(); count], vec![Vector::zeros(); count]);
-            scatter_into(&torus.mesh(), 1, &mut points, &mut normals);
+            scatter_into(&torus.mesh(), 1, &mut points, &mut normals, &Meter::unwatched()).unwrap();
             for (point, normal) in points.iter().zip(&normals) {
                 let outward = point.coords - Vector::new(point.x, point.y, 0.0).normalize() * 0.04;
                 assert!((outward.norm() - 0.01).abs() < 1e-4, "off the surface");
