@@ -19,7 +19,10 @@ SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)
 export SOURCE_DATE_EPOCH TZ=UTC LC_ALL=C
 umask 022
 export CARGO_TARGET_DIR=$work/cargo
-export RUSTFLAGS="--remap-path-prefix=$root=hangpose --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo"
+# Where the toolchain has the source of the standard library, messages name its files.
+RUSTFLAGS="--remap-path-prefix=$root=hangpose --remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo"
+RUSTFLAGS+=" --remap-path-prefix=$(rustc --print sysroot)=rust"
+export RUSTFLAGS
 rm -rf "$dist"
 mkdir -p "$dist" "$work"
 # Only what cargo built is kept from an earlier run.

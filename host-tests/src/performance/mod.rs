@@ -1,5 +1,6 @@
 //! Inputs and measurements of `make bench`: shapes of any size, files for other programs, growth, and single queries.
 
+pub mod adversarial;
 pub mod export;
 pub mod growth;
 #[cfg(feature = "peers")]

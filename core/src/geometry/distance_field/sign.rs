@@ -47,7 +47,7 @@ pub(super) fn find(
     nodes: &mut [i16],
     far: &mut [u8],
     mut scratch: Arena,
-    meter: &Meter,
+    meter: &mut Meter,
 ) -> Result<(), Unfinished> {
     let Bricks { surface, layout, grid, places, frames } = *bricks;
     let bricks = places.len();
@@ -68,7 +68,7 @@ pub(super) fn find(
         meter,
     };
     sides.link()?;
-    if is_closed(surface, meter)? {
+    if is_closed(surface, sides.meter)? {
         sides.fill_regions()?;
     } else {
         sides.is_simple = false;
@@ -79,7 +79,7 @@ pub(super) fn find(
     Ok(())
 }
 
-struct Sides<'a, 's> {
+struct Sides<'a, 's, 'm> {
     surface: &'a Surface<'a>,
     layout: &'a Layout,
     grid: &'a [u32],
@@ -99,7 +99,7 @@ struct Sides<'a, 's> {
     height: usize,
     /// Whether every winding number is 0 or 1, so that every triangle parts inside and outside.
     is_simple: bool,
-    meter: &'a Meter<'a>,
+    meter: &'a mut Meter<'m>,
 }
 
 /// All nodes that hang together with `nodes`.
@@ -115,7 +115,7 @@ fn flood(mut nodes: Nodes, links: &[Nodes; 3]) -> Nodes {
     }
 }
 
-impl Sides<'_, '_> {
+impl Sides<'_, '_, '_> {
     fn link(&mut self) -> Result<(), Stop> {
         for (links, distances) in self.links.iter_mut().zip(self.nearest.distances.iter()) {
             self.meter.check_cancelled()?;
@@ -135,6 +135,11 @@ impl Sides<'_, '_> {
     fn local(&self, brick: usize, node: usize) -> Vector {
         let first = self.layout.first_node(self.places[brick] as usize);
         first + Vector::from(coordinates(node).map(|i| i as f32))
+    }
+
+    fn winding_number(&mut self, point: &Point) -> Result<f32, Stop> {
+        self.meter.distance_queries(1)?;
+        Ok(self.surface.winding_number(point))
     }
 
     fn unknown(&self, brick: usize) -> Nodes {
@@ -169,7 +174,7 @@ impl Sides<'_, '_> {
                 if distance <= CLEAR {
                     break;
                 }
-                let winding = self.surface.winding_number(&self.point(brick, node));
+                let winding = self.winding_number(&self.point(brick, node))?;
                 self.is_simple &= (winding - 0.5).abs() < 1.0;
                 let side = if winding > 0.5 { INSIDE } else { OUTSIDE };
                 self.enter(self.places[brick] as usize, 1 << node, side);
@@ -241,7 +246,7 @@ impl Sides<'_, '_> {
                     break;
                 }
                 let part = flood(1 << node, &self.links[brick]) & self.unknown(brick);
-                let winding = self.surface.winding_number(&self.point(brick, node));
+                let winding = self.winding_number(&self.point(brick, node))?;
                 if (winding - 0.5).abs() > CERTAIN {
                     self.sides[usize::from(winding > 0.5)][brick] |= part;
                     continue;
@@ -249,7 +254,7 @@ impl Sides<'_, '_> {
                 for octant in 0..8 {
                     let group = part & octant_nodes(octant);
                     if let Some((node, _)) = self.furthest(brick, group) {
-                        let inside = self.surface.winding_number(&self.point(brick, node)) > 0.5;
+                        let inside = self.winding_number(&self.point(brick, node))? > 0.5;
                         self.sides[usize::from(inside)][brick] |= group;
                     }
                 }
@@ -285,7 +290,7 @@ impl Sides<'_, '_> {
                         let inside = if aabb.contains(&point) {
                             match winding {
                                 Some(winding) if (winding - 0.5).abs() > CERTAIN => {}
-                                _ => winding = Some(self.surface.winding_number(&point)),
+                                _ => winding = Some(self.winding_number(&point)?),
                             }
                             winding.is_some_and(|winding| winding > 0.5)
                         } else {
@@ -306,7 +311,7 @@ impl Sides<'_, '_> {
             let mut inside = self.sides[1][brick];
             let mut verdicts = [None; 2];
             for node in each(self.unknown(brick)) {
-                inside |= Nodes::from(self.is_inside(brick, node, &mut verdicts)) << node;
+                inside |= Nodes::from(self.is_inside(brick, node, &mut verdicts)?) << node;
             }
             self.sides[1][brick] = inside;
             let distances = &self.nearest.distances[brick];
@@ -320,14 +325,19 @@ impl Sides<'_, '_> {
 
     /// Whether a node very close to the mesh is inside. `verdicts` are those on nodes of the brick that were behind and in
     /// front of their nearest triangle.
-    fn is_inside(&self, brick: usize, node: usize, verdicts: &mut [Option<bool>; 2]) -> bool {
+    fn is_inside(
+        &mut self,
+        brick: usize,
+        node: usize,
+        verdicts: &mut [Option<bool>; 2],
+    ) -> Result<bool, Stop> {
         let local = self.local(brick, node);
         let (distances, triangles) = (&self.nearest.distances[brick], &self.nearest.triangles[brick]);
         let frame = &self.frames[triangles[node] as usize];
         let height = frame.height(&local);
         let is_above_face = height.abs() >= ABOVE_FACE * distances[node];
         if self.is_simple && is_above_face {
-            return height * self.surface.orientation() < 0.0;
+            return Ok(height * self.surface.orientation() < 0.0);
         }
         if !self.is_simple {
             // As a neighbour that is on the same side of both triangles.
@@ -335,20 +345,21 @@ impl Sides<'_, '_> {
             for other in each((BESIDE[node] | DIAGONAL[node]) & known) {
                 let (there, its) = (self.local(brick, other), &self.frames[triangles[other] as usize]);
                 if frame.height(&there) * height > 0.0 && its.height(&there) * its.height(&local) > 0.0 {
-                    return self.sides[1][brick] >> other & 1 == 1;
+                    return Ok(self.sides[1][brick] >> other & 1 == 1);
                 }
             }
         }
         // In walls thinner than a voxel there are many, and what is right behind one face is right behind the next.
         let verdict = &mut verdicts[usize::from(height > 0.0)];
         match *verdict {
-            Some(inside) if is_above_face => inside,
+            Some(inside) if is_above_face => Ok(inside),
             _ => {
+                self.meter.distance_queries(1)?;
                 let inside = self.surface.is_inside(&self.point(brick, node));
                 if is_above_face {
                     *verdict = Some(inside);
                 }
-                inside
+                Ok(inside)
             }
         }
     }

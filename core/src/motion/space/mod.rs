@@ -273,7 +273,8 @@ impl<'a> Space<'a> {
                     query.surface(hung.object.surface(), &hung.pose, Obstacle::Hung(index));
                 });
             }
-            let queries = query.queries;
+            // A pose that is far from everything counts as well, so that a work limit ends the longest way.
+            let queries = query.queries.max(1);
             meter.distance_queries(queries)?;
         }
         for part in moving.gripper.iter().flat_map(|gripper| gripper.parts).enumerate() {
