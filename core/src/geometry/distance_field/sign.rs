@@ -323,7 +323,10 @@ impl Sides<'_, '_> {
     fn is_inside(&self, brick: usize, node: usize, verdicts: &mut [Option<bool>; 2]) -> bool {
         let local = self.local(brick, node);
         let (distances, triangles) = (&self.nearest.distances[brick], &self.nearest.triangles[brick]);
-        let frame = &self.frames[triangles[node] as usize];
+        // None is known only far from the mesh, where the side is known.
+        let Some(frame) = self.frames.get(triangles[node] as usize) else {
+            return self.surface.is_inside(&self.point(brick, node));
+        };
         let height = frame.height(&local);
         let is_above_face = height.abs() >= ABOVE_FACE * distances[node];
         if self.is_simple && is_above_face {
@@ -333,7 +336,8 @@ impl Sides<'_, '_> {
             // As a neighbour that is on the same side of both triangles.
             let known = self.sides[0][brick] | self.sides[1][brick];
             for other in each((BESIDE[node] | DIAGONAL[node]) & known) {
-                let (there, its) = (self.local(brick, other), &self.frames[triangles[other] as usize]);
+                let Some(its) = self.frames.get(triangles[other] as usize) else { continue };
+                let there = self.local(brick, other);
                 if frame.height(&there) * height > 0.0 && its.height(&there) * its.height(&local) > 0.0 {
                     return self.sides[1][brick] >> other & 1 == 1;
                 }

@@ -143,9 +143,12 @@ pub(crate) fn scatter_into(
         a == 1
     };
     let stride = (1..=(0.618 * count as f64) as usize).rev().find(is_coprime).unwrap_or(1);
-    draw(mesh, seed, count, meter, |place, candidate| {
-        let place = (place * stride) % count;
+    let mut place = 0;
+    draw(mesh, seed, count, meter, |_, candidate| {
         (points[place], normals[place]) = candidate.on(mesh);
+        // Not a product, which 32 bits cannot hold.
+        place += stride;
+        place -= if place < count { 0 } else { count };
     })?;
     Ok(())
 }
