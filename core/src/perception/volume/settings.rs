@@ -76,7 +76,7 @@ impl core::fmt::Display for VolumeSettingsError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Voxel { voxel } => {
-                write!(f, "the voxel size {voxel} must be a positive number of metres, such as 0.002")
+                write!(f, "the voxel size {voxel} must be a positive number of metres below 1e34, such as 0.002")
             }
             Self::Truncation { truncation, range: [least, greatest] } => write!(
                 f,
@@ -217,7 +217,7 @@ mod tests {
         let (largest, crop) =
             (f32::INFINITY, Some(Aabb { min: [-f32::INFINITY; 3].into(), max: [f32::INFINITY; 3].into() }));
         for settings in [
-            VolumeSettings { truncation: largest, ..VolumeSettings::new(1e37) },
+            VolumeSettings { truncation: largest, ..VolumeSettings::new(1.1e37) },
             VolumeSettings { crop, dense: true, ..VolumeSettings::new(1e35) },
         ] {
             assert!(matches!(settings.validate(), Err(Error::Voxel { .. })), "{settings:?}");
