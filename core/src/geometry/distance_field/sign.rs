@@ -301,7 +301,7 @@ impl Sides<'_, '_> {
 
     /// Decides for the remaining nodes and writes the signed distances.
     fn finish(&mut self, nodes: &mut [i16]) -> Result<(), Stop> {
-        for brick in 0..self.places.len() {
+        for (brick, nodes) in nodes.chunks_exact_mut(BRICK_NODES).enumerate() {
             self.meter.check_cancelled()?;
             let mut inside = self.sides[1][brick];
             let mut verdicts = [None; 2];
@@ -310,7 +310,7 @@ impl Sides<'_, '_> {
             }
             self.sides[1][brick] = inside;
             let distances = &self.nearest.distances[brick];
-            for (node, to) in nodes[brick * BRICK_NODES..][..BRICK_NODES].iter_mut().enumerate() {
+            for (node, to) in nodes.iter_mut().enumerate() {
                 let size = (distances[node] * (1.0 / QUANTUM) + 0.5).min(f32::from(i16::MAX)) as i32 as i16;
                 *to = if inside >> node & 1 == 0 { size } else { -size };
             }

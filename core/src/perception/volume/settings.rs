@@ -76,7 +76,10 @@ impl core::fmt::Display for VolumeSettingsError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Voxel { voxel } => {
-                write!(f, "the voxel size {voxel} must be a positive number of metres below 1e34, such as 0.002")
+                write!(
+                    f,
+                    "the voxel size {voxel} must be a positive number of metres below 1e34, such as 0.002"
+                )
             }
             Self::Truncation { truncation, range: [least, greatest] } => write!(
                 f,
