@@ -264,6 +264,18 @@ mod tests {
     }
 
     #[test]
+    fn scattered_ones_fill_every_place() {
+        let torus = test_shapes::torus(0.04, 0.012, 48, 24);
+        for count in [1, 2, 3, 10, 997, 100_000] {
+            let (mut points, mut normals) =
+                (vec![Point::from([f32::NAN; 3]); count], vec![Vector::zeros(); count]);
+            scatter_into(&torus.mesh(), 1, &mut points, &mut normals, &Meter::unwatched()).unwrap();
+            let is_filled = |(point, normal): (&Point, &Vector)| point.x.is_finite() && normal.norm() > 0.9;
+            assert!(points.iter().zip(&normals).all(is_filled), "{count}");
+        }
+    }
+
+    #[test]
     fn names_what_is_wrong() {
         let torus = test_shapes::torus(0.04, 0.01, 48, 16);
         let mut four = ([[0.0; 3]; 4], [[0.0; 3]; 4]);
