@@ -4,4 +4,5 @@
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 source "$root/embedded/every.sh"
-"$root/embedded/stack.py" $((32 * 1024)) "$every_m7" arm-none-eabi-objdump
+link_every "$root/build/embedded/every"
+"$root/embedded/stack.py" $((32 * 1024)) "$root/build/embedded/every/cortex-m7" arm-none-eabi-objdump

@@ -14,6 +14,7 @@ pub(crate) struct Heap<'s> {
 impl<'s> Heap<'s> {
     /// An empty heap for `weights.len()` items; `order` and `places`, of the same length, are overwritten.
     pub(crate) fn empty(weights: &'s mut [f32], order: &'s mut [u32], places: &'s mut [u32]) -> Self {
+        debug_assert!(order.len() == weights.len() && places.len() == weights.len());
         for (index, (slot, place)) in order.iter_mut().zip(places.iter_mut()).enumerate() {
             (*slot, *place) = (index as u32, index as u32);
         }

@@ -244,7 +244,7 @@ pub(crate) const DETAIL: &str = "detail";
 pub(crate) fn keep_apart(regions: &[Region]) -> Result<(), Failure> {
     debug_assert!(regions[1..].iter().all(|region| region.name != DETAIL));
     for (index, one) in regions.iter().enumerate() {
-        for other in &regions[index + 1..] {
+        for other in regions.iter().skip(index + 1) {
             if one.overlaps(other) && (one.is_written || other.is_written) {
                 let (written, other) = if one.is_written { (one, other) } else { (other, one) };
                 return Err(Failure::Overlap { written: written.name, other: other.name });

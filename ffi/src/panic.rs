@@ -3,7 +3,11 @@
 /// Stops the program at the panic, as a failed assertion in C does, so that a debugger or a core dump shows the
 /// place. A program without an operating system has no `abort`, so this uses the trap instruction of the processor.
 #[panic_handler]
-fn stop(_: &core::panic::PanicInfo) -> ! {
+fn stop(info: &core::panic::PanicInfo) -> ! {
+    // embedded/no_panic.sh reads in the program where it may panic. Otherwise the compiler drops the places, as nothing uses them.
+    if cfg!(panic_places) {
+        core::hint::black_box(info.location());
+    }
     // SAFETY: the instructions raise an exception and touch nothing.
     #[allow(unused_unsafe)]
     unsafe {

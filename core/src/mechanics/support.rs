@@ -155,6 +155,10 @@ impl<'a> Support<'a> {
         meter: &Meter,
     ) -> Result<Self, Unfinished> {
         let (points, Room { patches, representatives, groups }) = (tree.points(), room);
+        debug_assert!(
+            [normals.len(), spacings.len(), is_guessed.len(), is_excluded.len()] == [points.len(); 4]
+        );
+        debug_assert!(patches.len() >= points.len() && representatives.len() >= points.len());
         let is_covered = scratch.slice::<u8>(points.len())?;
         let overall = overall_spacing(spacings);
         let (mut around, mut count) = (Surroundings::new(), 0);

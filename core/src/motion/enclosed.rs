@@ -229,7 +229,10 @@ impl<'b> Grid<'b> {
                 if self.body.field.distance(&nalgebra::center(&here, &there)) > self.between {
                     continue;
                 }
-                let turns = cells[index].turns.saturating_add(turn(flat(&here), flat(&there)));
+                // What goes round more often than can be counted may or may not be closed.
+                let Some(turns) = cells[index].turns.checked_add(turn(flat(&here), flat(&there))) else {
+                    return Ok(false);
+                };
                 if cells[beside].state == Cell::UNKNOWN {
                     if count == queue.len() {
                         return Ok(false);
@@ -293,8 +296,9 @@ fn goes_through(
         return Ok(false);
     };
     (passes[first], queue[0]) = (0, first as u32);
-    let (mut next, mut count, mut is_linked) = (0, 1, false);
-    while next < count && !is_linked {
+    // What goes through more often than can be counted, as a long spring does, may or may not be linked.
+    let (mut next, mut count, mut is_linked, mut is_countable) = (0, 1, false, true);
+    while next < count && !is_linked && is_countable {
         let index = queue[next] as usize;
         next += 1;
         meter.distance_queries(1)?;
@@ -318,7 +322,10 @@ fn goes_through(
             if through != 0 && disc.distance(&here, &there) < cell {
                 return;
             }
-            let passed = passes[index].saturating_add(through);
+            let Some(passed) = passes[index].checked_add(through).filter(|passed| *passed != UNKNOWN) else {
+                is_countable = false;
+                return;
+            };
             if passes[other] == UNKNOWN {
                 (passes[other], queue[count]) = (passed, other as u32);
                 count += 1;
@@ -327,7 +334,7 @@ fn goes_through(
             }
         });
     }
-    Ok(is_linked)
+    Ok(is_linked && is_countable)
 }
 
 /// A surface with a closed curve as its border: triangles between the curve and an apex.
@@ -383,4 +390,58 @@ fn passes(from: &Point, to: &Point, [a, b, c]: [&Point; 3]) -> i8 {
 /// Six times the signed volume of a tetrahedron.
 fn volume([a, b, c, d]: [&Point; 4]) -> f32 {
     (b - a).cross(&(c - a)).dot(&(d - a))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::PointTree;
+    use crate::memory::model_bytes;
+    use crate::motion::failure::{Mover, Obstacle};
+
+    /// Whether a spring that is wound around a ring, open at both ends and with so many turns, goes through it.
+    fn spring_goes_through(turns: f32, is_closed: bool) -> bool {
+        use core::f32::consts::TAU;
+        const RADIUS: f32 = 1.0;
+        let on_ring = |angle: f32| Vector::new(libm::cosf(angle), libm::sinf(angle), 0.0);
+        let curve: Vec<Point> =
+            (0..256).map(|k| Point::from(on_ring(TAU * k as f32 / 256.0) * RADIUS)).collect();
+        let count = (30.0 * turns.abs()) as usize;
+        let points: Vec<Point> = (0..count)
+            .map(|k| {
+                let share = k as f32 / count as f32 * if is_closed { 1.0 } else { 0.95 };
+                let (out, turn) = (on_ring(TAU * share), TAU * turns * share);
+                Point::from(
+                    out * (RADIUS + 0.02 * libm::cosf(turn)) + Vector::z() * (0.02 * libm::sinf(turn)),
+                )
+            })
+            .collect();
+        let needed = model_bytes(PointTree::bytes(count) + bytes(count));
+        let mut memory = vec![0; needed];
+        let mut arena = Arena::new(&mut memory, needed).unwrap();
+        let mut meter = Meter::unwatched();
+        let tree = PointTree::build(&points, &mut arena, &meter).unwrap();
+        let (patches, representatives) =
+            (vec![Zeroable::zeroed(); count], (0..count as u32).collect::<Vec<_>>());
+        let support =
+            Support { tree, patches: &patches, representatives: &representatives, groups: &[], reach: 0.0 };
+        let touch = Touch {
+            distance: 0.0,
+            at: points[0],
+            normal: Vector::z(),
+            mover: Mover::Object,
+            obstacle: Obstacle::Supporter,
+        };
+        goes_through(&support, &touch, (0.01, &|_| true), (&curve, 0.005), arena, &mut meter).ok().unwrap()
+    }
+
+    #[test]
+    fn a_spring_around_a_ring_is_linked_only_where_its_ends_meet() {
+        for sign in [1.0, -1.0] {
+            assert!(spring_goes_through(sign * 60.0, true));
+            assert!(!spring_goes_through(sign * 60.0, false));
+            // More turns than an `i8` counts.
+            assert!(!spring_goes_through(sign * 150.0, false));
+        }
+    }
 }

@@ -48,6 +48,7 @@ impl<'s> Route<'s> {
     }
 
     pub(super) fn copy_from(&mut self, other: &Route) {
+        debug_assert!(self.places.len() == other.places.len());
         self.len = other.len;
         self.places[..self.len].copy_from_slice(other.places());
         self.clearances[..self.len].copy_from_slice(&other.clearances[..self.len]);

@@ -26,7 +26,7 @@ impl Search<'_, '_, '_> {
     pub(super) fn sample(&mut self, starts: usize) -> Placement {
         if self.random.next_f32() < OF_STARTS {
             let index = (self.random.next_f32() * starts as f32) as usize;
-            let start = self.trees[START].nodes()[index.min(starts - 1)].placement;
+            let start = self.trees[START].placement(index.min(starts - 1));
             if self.random.next_f32() < AS_IT_STARTS {
                 return start;
             }

@@ -129,7 +129,7 @@ impl Search<'_, '_, '_> {
         meter: &mut Meter,
     ) -> Result<bool, Stop> {
         for start in 0..self.starts() {
-            let target = self.trees[START].nodes()[start].placement;
+            let target = self.trees[START].placement(start);
             let leg = self.goal.leg_to(&target);
             let way = self.space.way(&self.goal, &leg, self.required, meter)?;
             if way.is_free()
@@ -185,7 +185,7 @@ impl Search<'_, '_, '_> {
         permit: &mut Permit,
         meter: &mut Meter,
     ) -> Result<bool, Stop> {
-        let meeting = self.trees[grown].nodes()[node].placement;
+        let meeting = self.trees[grown].placement(node);
         let Some((other, true)) = self.grow(1 - grown, &meeting, permit, meter)? else { return Ok(false) };
         self.met = if grown == GOAL { [node, other] } else { [other, node] };
         self.write(route);
@@ -216,7 +216,7 @@ impl Search<'_, '_, '_> {
         let reach = self.space.moving.reach;
         let mut at = root;
         for _ in 0..STEPS_ASIDE {
-            let place = self.trees[tree].nodes()[at].placement;
+            let place = self.trees[tree].placement(at);
             let leg = place.leg_to(target);
             let way = self.space.way(&place, &leg, self.required, meter)?;
             if way.is_free() && leg.travel(reach) < 1e-6 {
@@ -231,7 +231,7 @@ impl Search<'_, '_, '_> {
             if way.is_free() {
                 return Ok(Some((at, true)));
             }
-            let place = self.trees[tree].nodes()[at].placement;
+            let place = self.trees[tree].placement(at);
             let leg = place.leg_to(target);
             let stride = (STRIDE * reach / leg.travel(reach)).min(1.0);
             let (moved, clearance) = self.step_aside(&place, &leg.scaled(stride), meter)?;
@@ -257,7 +257,7 @@ impl Search<'_, '_, '_> {
         meter: &mut Meter,
     ) -> Result<Option<usize>, Stop> {
         let Some(from) = self.trees[GOAL].nearest(target) else { return Ok(None) };
-        let leg = self.trees[GOAL].nodes()[from].placement.leg_to(target);
+        let leg = self.trees[GOAL].placement(from).leg_to(target);
         self.drag(from, leg, permit, meter)
     }
 
@@ -274,7 +274,7 @@ impl Search<'_, '_, '_> {
         let stride = (STRIDE * reach).max(LEAST_STRIDE);
         let (mut at, mut leg) = (from, leg);
         for _ in 0..DRAG_STEPS {
-            let place = self.trees[GOAL].nodes()[at].placement;
+            let place = self.trees[GOAL].placement(at);
             let wanted = leg.scaled(stride / leg.travel(reach).max(1e-9));
             let mut step = self.step_aside(&place, &wanted, meter)?;
             if step.0.travel(reach) < STUCK * stride {

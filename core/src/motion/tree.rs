@@ -91,6 +91,11 @@ impl<'s> Tree<'s> {
         &self.nodes[..self.len]
     }
 
+    /// Where a node is.
+    pub(super) fn placement(&self, node: usize) -> Placement {
+        self.nodes()[node].placement
+    }
+
     pub(super) fn is_full(&self) -> bool {
         self.len == self.nodes.len()
     }

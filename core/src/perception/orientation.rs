@@ -103,6 +103,7 @@ pub(crate) fn orient(
     meter: &Meter,
 ) -> Result<(), Unfinished> {
     let points = tree.points();
+    debug_assert!(normals.len() == points.len() && spacings.len() == points.len());
     let from_top = scratch.slice::<u32>(points.len())?;
     let parents = scratch.slice::<u32>(points.len())?;
     // For each point the piece that it is in, which is a place in the next two.

@@ -36,7 +36,8 @@ fn all(frames: &[ScanFrame], max_depth: f32, crop: Option<Aabb>) -> Vec<Point> {
 fn points(frame: &ScanFrame, image: &DepthImage, max_depth: f32) -> Vec<Point> {
     let [width, height] = image.camera().size();
     let pixels = (0..height).step_by(STRIDE).flat_map(|v| (0..width).step_by(STRIDE).map(move |u| (u, v)));
-    let is_shown = |u, v| frame.mask().is_none_or(|mask| mask.labels[(v * width + u) as usize] == mask.label);
+    let is_shown =
+        |u, v| frame.mask().is_none_or(|mask| mask.labels.get((v * width + u) as usize) == Some(&mask.label));
     pixels
         .filter(|(u, v)| is_shown(*u, *v))
         .filter_map(|(u, v)| image.point(u, v).filter(|point| point.z <= max_depth))

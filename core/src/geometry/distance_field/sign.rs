@@ -306,7 +306,7 @@ impl Sides<'_, '_, '_> {
 
     /// Decides for the remaining nodes and writes the signed distances.
     fn finish(&mut self, nodes: &mut [i16]) -> Result<(), Stop> {
-        for brick in 0..self.places.len() {
+        for (brick, nodes) in nodes.chunks_exact_mut(BRICK_NODES).enumerate() {
             self.meter.check_cancelled()?;
             let mut inside = self.sides[1][brick];
             let mut verdicts = [None; 2];
@@ -315,7 +315,7 @@ impl Sides<'_, '_, '_> {
             }
             self.sides[1][brick] = inside;
             let distances = &self.nearest.distances[brick];
-            for (node, to) in nodes[brick * BRICK_NODES..][..BRICK_NODES].iter_mut().enumerate() {
+            for (node, to) in nodes.iter_mut().enumerate() {
                 let size = (distances[node] * (1.0 / QUANTUM) + 0.5).min(f32::from(i16::MAX)) as i32 as i16;
                 *to = if inside >> node & 1 == 0 { size } else { -size };
             }
@@ -333,7 +333,10 @@ impl Sides<'_, '_, '_> {
     ) -> Result<bool, Stop> {
         let local = self.local(brick, node);
         let (distances, triangles) = (&self.nearest.distances[brick], &self.nearest.triangles[brick]);
-        let frame = &self.frames[triangles[node] as usize];
+        // None is known only far from the mesh, where the side is known.
+        let Some(frame) = self.frames.get(triangles[node] as usize) else {
+            return self.surface.is_inside(&self.point(brick, node));
+        };
         let height = frame.height(&local);
         let is_above_face = height.abs() >= ABOVE_FACE * distances[node];
         if self.is_simple && is_above_face {
@@ -343,7 +346,8 @@ impl Sides<'_, '_, '_> {
             // As a neighbour that is on the same side of both triangles.
             let known = self.sides[0][brick] | self.sides[1][brick];
             for other in each((BESIDE[node] | DIAGONAL[node]) & known) {
-                let (there, its) = (self.local(brick, other), &self.frames[triangles[other] as usize]);
+                let Some(its) = self.frames.get(triangles[other] as usize) else { continue };
+                let there = self.local(brick, other);
                 if frame.height(&there) * height > 0.0 && its.height(&there) * its.height(&local) > 0.0 {
                     return Ok(self.sides[1][brick] >> other & 1 == 1);
                 }

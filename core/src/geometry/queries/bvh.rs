@@ -123,6 +123,8 @@ impl<'m> Bvh<'m> {
         nodes: &'m mut [Node],
         meter: &Meter,
     ) -> Result<Self, Stop> {
+        debug_assert!(order.len() == items.len() && !items.is_empty());
+        debug_assert!(nodes.len() >= Self::max_nodes(items.len()));
         let mut used = 1;
         let mut pending = heapless::Vec::<(usize, usize, usize, u32), { MAX_DEPTH + 2 }>::new();
         let mut next = Some((0, 0, order.len(), 0));

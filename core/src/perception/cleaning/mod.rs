@@ -83,10 +83,11 @@ pub(crate) fn clean<'s>(
     let count = kept.points.len();
     let (normals, spacings) = (&mut normals_kept[..count], &mut spacings[..count]);
     let (is_excluded, is_guessed) = (&mut is_excluded[..count], &is_guessed[..count]);
-    for (place, &index) in slots.tree().order().iter().enumerate() {
-        meter.check_at(place)?;
-        normals[place] = kept.normals[index as usize];
-        is_excluded[place] = kept.is_on_plane[index as usize];
+    let places = normals.iter_mut().zip(is_excluded.iter_mut()).zip(slots.tree().order());
+    for (step, ((normal, is_excluded), &index)) in places.enumerate() {
+        meter.check_at(step)?;
+        *normal = kept.normals[index as usize];
+        *is_excluded = kept.is_on_plane[index as usize];
     }
     counts.on_planes = is_excluded.iter().filter(|flag| **flag > 0).count();
     slots.rename(kept.names);

@@ -189,11 +189,11 @@ impl<'m> Work<'m> {
 
     /// Sets the sites to the nearest voxel outside.
     fn find_nearest_free(&mut self, meter: &Meter) -> Result<(), CompletionError> {
-        for index in 0..self.states.len() {
+        let voxels = self.states.iter().zip(self.values.iter_mut()).zip(self.sites.iter_mut());
+        for (index, ((&state, value), site)) in voxels.enumerate() {
             meter.check_at(index)?;
-            let is_outside = self.state(index) == State::Outside;
-            self.values[index] = if is_outside { 0.0 } else { f32::INFINITY };
-            self.sites[index] = index as u32;
+            let is_outside = State::of(state) == State::Outside;
+            (*value, *site) = (if is_outside { 0.0 } else { f32::INFINITY }, index as u32);
         }
         Ok(transform(self.grid.size, self.values, self.sites, &mut self.line, || meter.check())?)
     }
@@ -213,12 +213,12 @@ impl<'m> Work<'m> {
 
     /// Sets the values to the signed distance to the union of the balls, voxels, exact where it is zero.
     fn unite_balls(&mut self, meter: &Meter) -> Result<(), CompletionError> {
-        for index in 0..self.states.len() {
+        let balls = self.states.iter().zip(self.lengths.iter());
+        let voxels = balls.zip(self.values.iter_mut().zip(self.sites.iter_mut()));
+        for (index, ((&state, &radius), (value, site))) in voxels.enumerate() {
             meter.check_at(index)?;
-            let radius = self.lengths[index];
-            let is_ball = self.state(index) != State::Outside && radius > 0.0;
-            self.values[index] = if is_ball { -radius * radius } else { f32::INFINITY };
-            self.sites[index] = index as u32;
+            let is_ball = State::of(state) != State::Outside && radius > 0.0;
+            (*value, *site) = (if is_ball { -radius * radius } else { f32::INFINITY }, index as u32);
         }
         transform(self.grid.size, self.values, self.sites, &mut self.line, || meter.check())?;
         for index in 0..self.states.len() {
@@ -234,9 +234,9 @@ impl<'m> Work<'m> {
     /// Fills what no ball fills and no free space borders on.
     fn fill_cavities(&mut self, meter: &Meter) -> Result<(), CompletionError> {
         // From here on, a site is one where free space reaches the voxel.
-        for index in 0..self.states.len() {
+        for (index, (site, &state)) in self.sites.iter_mut().zip(self.states.iter()).enumerate() {
             meter.check_at(index)?;
-            self.sites[index] = u32::from(self.state(index) == State::Outside);
+            *site = u32::from(State::of(state) == State::Outside);
         }
         let [x, y, z] = self.grid.strides();
         let count = self.states.len();
@@ -252,10 +252,11 @@ impl<'m> Work<'m> {
                 changes |= self.reach(index, [index + x, index + y, index + z]);
             }
         }
-        for index in 0..count {
+        let voxels = self.sites.iter().zip(self.values.iter_mut()).zip(self.lengths.iter());
+        for (index, ((&site, value), length)) in voxels.enumerate() {
             meter.check_at(index)?;
-            if self.sites[index] == 0 {
-                self.values[index] = self.values[index].min(-self.lengths[index].max(1.0));
+            if site == 0 {
+                *value = value.min(-length.max(1.0));
             }
         }
         Ok(())

@@ -11,7 +11,8 @@ const STRIDE: usize = 8;
 /// if they show nothing up to the depth `max_depth`, metres, or the room is not finite. Behind the surface in an image there is room for an object as
 /// deep as it appears narrow. `margin`, metres, is added on all sides; the truncation and two voxels suit a volume.
 ///
-/// Each image may have a mask that says which pixels count.
+/// Each image may have a mask that says which pixels count. Of a mask that is too short the other pixels do not count;
+/// [`Volume::integrate`](crate::perception::volume::Volume::integrate) says that it is.
 pub fn room<'a>(
     images: impl Iterator<Item = (DepthImage<'a>, Option<Mask<'a>>)> + Clone,
     settings: &CompletionSettings,

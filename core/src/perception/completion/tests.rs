@@ -1,7 +1,7 @@
 use super::*;
 use crate::Stop;
 use crate::geometry::{Aabb, Point, Pose};
-use crate::perception::depth::{DepthCamera, DepthImage};
+use crate::perception::depth::{DepthCamera, DepthImage, Mask};
 use crate::perception::isosurface::Isosurface;
 use crate::perception::test_views::{
     BALL_RADIUS, Distance, TORUS, View, around, ball, camera, look_from, torus,
@@ -240,6 +240,10 @@ fn the_room_holds_what_is_behind() {
     assert!(room(images.clone(), &settings, 0.1, 0.0).is_none());
     // Nowhere, and larger than any number.
     assert!(room(images.clone(), &settings, 1.0, f32::INFINITY).is_none());
+    // A mask without labels shows nothing, and one with some of them some.
+    let mask = Mask { labels: &[], label: 1 };
+    let masked = views.iter().map(|view| (view.image(), Some(mask)));
+    assert_eq!(room(masked, &settings, 1.0, 0.0), None);
     let lens = DepthCamera::new([2, 2], [1e-30; 2], [0.5; 2], [1e30, 0.0, 0.0, 0.0, 0.0]).unwrap();
     let image = DepthImage::new(lens, &[500; 4], 0.001, Pose::identity()).unwrap();
     assert_eq!(room([(image, None)].into_iter(), &settings, 1.0, 0.0), None);

@@ -10,9 +10,9 @@ pub struct Mask<'a> {
 }
 
 impl Mask<'_> {
-    /// Whether a pixel shows the object.
+    /// Whether a pixel shows the object. One without a label does not.
     #[inline]
     pub(crate) fn holds(&self, pixel: usize) -> bool {
-        self.labels[pixel] == self.label
+        self.labels.get(pixel) == Some(&self.label)
     }
 }

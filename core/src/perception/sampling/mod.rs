@@ -143,9 +143,12 @@ pub(crate) fn scatter_into(
         a == 1
     };
     let stride = (1..=(0.618 * count as f64) as usize).rev().find(is_coprime).unwrap_or(1);
-    draw(mesh, seed, count, meter, |place, candidate| {
-        let place = (place * stride) % count;
+    let mut place = 0;
+    draw(mesh, seed, count, meter, |_, candidate| {
         (points[place], normals[place]) = candidate.on(mesh);
+        // Not a product, which 32 bits cannot hold.
+        place += stride;
+        place -= if place < count { 0 } else { count };
     })?;
     Ok(())
 }
@@ -257,6 +260,18 @@ mod tests {
                 let aside = part.iter().filter(|point| point.x > 0.0).count();
                 assert!(part.len() < 100 || (40..=60).contains(&aside), "{aside} of {}", part.len());
             }
+        }
+    }
+
+    #[test]
+    fn scattered_ones_fill_every_place() {
+        let torus = test_shapes::torus(0.04, 0.012, 48, 24);
+        for count in [1, 2, 3, 10, 997, 100_000] {
+            let (mut points, mut normals) =
+                (vec![Point::from([f32::NAN; 3]); count], vec![Vector::zeros(); count]);
+            scatter_into(&torus.mesh(), 1, &mut points, &mut normals, &Meter::unwatched()).unwrap();
+            let is_filled = |(point, normal): (&Point, &Vector)| point.x.is_finite() && normal.norm() > 0.9;
+            assert!(points.iter().zip(&normals).all(is_filled), "{count}");
         }
     }
 

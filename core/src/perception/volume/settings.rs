@@ -39,7 +39,7 @@ pub struct VolumeSettings {
 /// Why settings do not describe a volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum VolumeSettingsError {
-    /// The voxel size is not a positive number.
+    /// The voxel size is not a positive number, or so large that the volume would be infinite.
     Voxel {
         /// Size given, metres.
         voxel: f32,
@@ -76,7 +76,10 @@ impl core::fmt::Display for VolumeSettingsError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Voxel { voxel } => {
-                write!(f, "the voxel size {voxel} must be a positive number of metres, such as 0.002")
+                write!(
+                    f,
+                    "the voxel size {voxel} must be a positive number of metres below 1e34, such as 0.002"
+                )
             }
             Self::Truncation { truncation, range: [least, greatest] } => write!(
                 f,
@@ -151,7 +154,9 @@ impl VolumeSettings {
     /// The voxels that the volume stores.
     pub(super) fn extent(&self) -> Result<Extent, VolumeSettingsError> {
         let Self { voxel, truncation, crop, dense, max_depth, .. } = *self;
-        if !(voxel.is_normal() && voxel > 0.0 && (1.0 / voxel).is_normal()) {
+        // The whole range of voxels has a size in metres, so that neither a truncation nor a corner can be infinite.
+        let span = VOXEL_RANGE as f32 * voxel;
+        if !(voxel.is_normal() && voxel > 0.0 && (1.0 / voxel).is_normal() && span.is_finite()) {
             return Err(VolumeSettingsError::Voxel { voxel });
         }
         let range = TRUNCATIONS.map(|t| t * voxel);
@@ -208,11 +213,19 @@ mod tests {
         use VolumeSettingsError as Error;
         let fine = VolumeSettings::new(0.002);
         assert_eq!(fine.validate(), Ok(()));
-        for voxel in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e-40] {
+        for voxel in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e-40, 1e37] {
             let error = VolumeSettings { voxel, ..fine }.validate().unwrap_err();
             assert!(matches!(error, Error::Voxel { .. }), "{voxel}");
         }
-        for truncation in [0.0, 0.0039, 0.065, f32::NAN] {
+        let (largest, crop) =
+            (f32::INFINITY, Some(Aabb { min: [-f32::INFINITY; 3].into(), max: [f32::INFINITY; 3].into() }));
+        for settings in [
+            VolumeSettings { truncation: largest, ..VolumeSettings::new(1.1e37) },
+            VolumeSettings { crop, dense: true, ..VolumeSettings::new(1e35) },
+        ] {
+            assert!(matches!(settings.validate(), Err(Error::Voxel { .. })), "{settings:?}");
+        }
+        for truncation in [0.0, 0.0039, 0.065, f32::INFINITY, f32::NAN] {
             let error = VolumeSettings { truncation, ..fine }.validate().unwrap_err();
             assert!(matches!(error, Error::Truncation { .. }), "{truncation}");
         }
