@@ -898,10 +898,10 @@ typedef struct hangpose_motion {
   // Distance from obstacles that the path keeps where there is room for it, metres; above 0, at most 0.1. At the release
   // pose, and where the way is narrow, it is less, but never a collision. Default: 0.005.
   float clearance;
-  // Largest distance of the centres of mass at two waypoints one after the other, metres; above 0, at most 1.
+  // Largest distance of the centres of mass at two waypoints one after the other, metres; 0.0001 to 1.
   // Default: 0.01.
   float step_position;
-  // Largest rotation from one to the next, radians; above 0, at most pi. Default: 0.1.
+  // Largest rotation from one to the next, radians; 0.001 to pi. Default: 0.1.
   float step_rotation;
   // Largest speed of the centre of mass, m/s; above 0, at most 100. Default: 0.25.
   float speed;

@@ -38,16 +38,16 @@ for target in "${targets[@]}"; do
         -malloc_limit_mb=256 -print_final_stats=1 -artifact_prefix="$folder/found/$target-")
     [ ! -e "fuzz/dictionaries/$target.dict" ] || options+=(-dict="fuzz/dictionaries/$target.dict")
     log=$folder/$target.log
-    # Run in a shell of its own, whose `times` are those of the target alone.
+    # Run in a shell of its own, so that its last line, of `times`, is that of the target alone.
     passed=yes
     (
         "$programs/$target" "${options[@]}" "$folder/corpus/$target" "$folder/seeds/$target" || touch "$log.failed"
-        printf 'processor: %s\n' "$(times | tail -n 1)"
+        times
     ) >"$log" 2>&1
     rm "$log.failed" 2>/dev/null && passed=no
     runs=$(grep -aoE 'number_of_executed_units: *[0-9]+' "$log" | grep -oE '[0-9]+$' || echo 0)
     covered=$(grep -aoE 'cov: [0-9]+' "$log" | tail -n 1 | grep -oE '[0-9]+' || echo 0)
-    used=$(sed -n 's/^processor: \([0-9]*\)m\([0-9]*\)[.0-9]*s .*/\1 \2/p' "$log" | awk '{ print 60 * $1 + $2 }')
+    used=$(tail -n 1 "$log" | sed 's/[ms]/ /g' | awk '{ print int(60 * $1 + $2) }')
     printf '%s\t%s\t%s\t%s\n' "$target" "$used" "$runs" "$covered" >>"$folder/runs.tsv"
     if [ $passed = no ]; then
         grep -aE -A 12 'panicked|ERROR: ' "$log" >&2 || tail -n 40 "$log" >&2

@@ -141,6 +141,7 @@ mod tests {
             Failure::Motion(MotionError::Value {
                 name: "speed.angular_acceleration",
                 value: worst[0],
+                min: worst[0],
                 max: worst[0],
             }),
             Failure::Motion(MotionError::Count { name: "samples", value: most, min: most, max: most }),

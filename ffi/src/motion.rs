@@ -64,10 +64,10 @@ pub struct hangpose_motion {
     /// Distance from obstacles that the path keeps where there is room for it, metres; above 0, at most 0.1. At the release
     /// pose, and where the way is narrow, it is less, but never a collision. Default: 0.005.
     pub clearance: f32,
-    /// Largest distance of the centres of mass at two waypoints one after the other, metres; above 0, at most 1.
+    /// Largest distance of the centres of mass at two waypoints one after the other, metres; 0.0001 to 1.
     /// Default: 0.01.
     pub step_position: f32,
-    /// Largest rotation from one to the next, radians; above 0, at most pi. Default: 0.1.
+    /// Largest rotation from one to the next, radians; 0.001 to pi. Default: 0.1.
     pub step_rotation: f32,
     /// Largest speed of the centre of mass, m/s; above 0, at most 100. Default: 0.25.
     pub speed: f32,
@@ -265,6 +265,7 @@ mod tests {
         };
         assert_eq!(named(hangpose_motion { clearance: 0.0, ..right }), "motion.clearance");
         assert_eq!(named(hangpose_motion { step_position: f32::NAN, ..right }), "motion.step_position");
+        assert_eq!(named(hangpose_motion { step_position: 1e-12, ..right }), "motion.step_position");
         assert_eq!(named(hangpose_motion { step_rotation: 4.0, ..right }), "motion.step_rotation");
         assert_eq!(named(hangpose_motion { speed: -1.0, ..right }), "motion.speed");
         assert_eq!(named(hangpose_motion { angular_speed: 101.0, ..right }), "motion.angular_speed");

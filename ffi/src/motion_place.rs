@@ -10,8 +10,8 @@ pub(crate) fn motion_place(error: MotionError) -> Place {
         MotionError::NoParts => Place::of("motion.part_count"),
         MotionError::Retreat => Place::of("motion.retreat"),
         MotionError::Workspace => Place::of("motion.workspace_low"),
-        MotionError::Value { name, value, max } => {
-            Place::of(field(name)).value(f64::from(value)).range([0.0, f64::from(max)])
+        MotionError::Value { name, value, min, max } => {
+            Place::of(field(name)).value(f64::from(value)).range([f64::from(min), f64::from(max)])
         }
         MotionError::Count { name, value, min, max } => {
             Place::of(field(name)).value(value as f64).range([min as f64, max as f64])

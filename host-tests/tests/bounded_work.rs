@@ -7,7 +7,7 @@ use hangpose::memory::Limits;
 use hangpose::motion::{Motion, Task, Waypoint, plan, plan_bytes};
 use hangpose::{Candidates, Monitor, Params, Stop, Work};
 use host_tests::performance::adversarial::{clouds, meshes};
-use host_tests::performance::refine::{refine, weld};
+use host_tests::performance::refine::{Triangles, refine, weld};
 use host_tests::performance::room::scatter;
 use host_tests::tables::case::made;
 
@@ -67,7 +67,7 @@ fn check(name: &str, mut call: impl FnMut(&Monitor) -> Option<(u64, Option<Stop>
 }
 
 /// Analyses both sides, predicts, and plans a path to the best pose.
-fn check_pair(name: &str, mesh: &(Vec<[f32; 3]>, Vec<[u32; 3]>), points: &[[f32; 3]]) {
+fn check_pair(name: &str, mesh: &Triangles, points: &[[f32; 3]]) {
     let Ok(mesh) = Mesh::new(&mesh.0, &mesh.1) else { return };
     let cloud = Cloud::new(points, None).unwrap();
     for params in profiles() {
@@ -117,7 +117,7 @@ fn check_pair(name: &str, mesh: &(Vec<[f32; 3]>, Vec<[u32; 3]>), points: &[[f32;
     }
 }
 
-fn ordinary() -> ((Vec<[f32; 3]>, Vec<[u32; 3]>), Vec<[f32; 3]>) {
+fn ordinary() -> (Triangles, Vec<[f32; 3]>) {
     let case = made(22, 61).into_iter().find(|case| case.object_kind == "mug").unwrap();
     let mug = refine(weld(&case.object.vertices, &case.object.triangles), TRIANGLES);
     (mug, scatter(&case.supporter.vertices, &case.supporter.triangles, POINTS).0)

@@ -162,8 +162,8 @@ pub(crate) fn motion(py: Python<'_>, error: &MotionError) -> PyErr {
         MotionError::NoParts => value(py, "gripper.parts", &text),
         MotionError::Retreat => value(py, "gripper.retreat", &text),
         MotionError::Workspace => value(py, "workspace", &text),
-        MotionError::Value { name, value, max } => {
-            let range = Some([0.0, f64::from(*max)]);
+        MotionError::Value { name, value, min, max } => {
+            let range = Some([f64::from(*min), f64::from(*max)]);
             let detail = Detail { field: name, index: None, value: Some((*value).into()), range };
             raise(py, "InvalidInput", &text, detail)
         }

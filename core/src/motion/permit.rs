@@ -4,6 +4,7 @@ use super::placement::{Leg, Placement};
 use super::route::{Route, parts};
 use crate::geometry::{Point, Pose};
 use crate::hanging::Distance;
+use crate::monitor::{Meter, Stop};
 
 /// Asks the caller whether poses are accepted, and counts how often.
 pub(super) struct Permit<'p> {
@@ -27,14 +28,36 @@ impl<'p> Permit<'p> {
     }
 
     /// Whether the caller accepts every pose of a leg, at distances of at most `step`, but the first.
-    pub(super) fn accepts_leg(&mut self, from: &Placement, leg: &Leg, step: &Distance) -> bool {
+    fn accepts_leg(
+        &mut self,
+        from: &Placement,
+        leg: &Leg,
+        step: &Distance,
+        meter: &Meter,
+    ) -> Result<bool, Stop> {
         let parts = parts(leg, step);
-        (1..=parts).all(|part| self.accepts(&from.after(leg, part as f32 / parts as f32)))
+        for part in 1..=parts {
+            meter.check_cancelled()?;
+            if !self.accepts(&from.after(leg, part as f32 / parts as f32)) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// The first leg of a route on which the caller refuses a pose.
-    pub(super) fn refused_leg(&mut self, route: &Route, step: &Distance) -> Option<usize> {
-        (0..route.legs()).find(|&leg| !self.accepts_leg(&route.places()[leg], &route.leg(leg), step))
+    pub(super) fn refused_leg(
+        &mut self,
+        route: &Route,
+        step: &Distance,
+        meter: &Meter,
+    ) -> Result<Option<usize>, Stop> {
+        for leg in 0..route.legs() {
+            if !self.accepts_leg(&route.places()[leg], &route.leg(leg), step, meter)? {
+                return Ok(Some(leg));
+            }
+        }
+        Ok(None)
     }
 
     /// Whether the caller has refused a pose: then it is worth asking early.

@@ -292,7 +292,7 @@ impl<'a> Planner<'_, 'a, '_> {
             short.copy_from(found);
             let kept = (search.required, motion.clearance);
             shorten(search.space, short, kept, &mut search.random, self.meter)?;
-            let is_accepted = permit.refused_leg(short, &motion.step).is_none();
+            let is_accepted = permit.refused_leg(short, &motion.step, self.meter)?.is_none();
             if is_accepted && let Ok(clearance) = certify(search.space, short, self.meter)? {
                 return Ok(clearance);
             }

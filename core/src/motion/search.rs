@@ -137,7 +137,7 @@ impl Search<'_, '_, '_> {
             {
                 self.met = [node, start];
                 self.write(route);
-                match permit.refused_leg(route, &self.step) {
+                match permit.refused_leg(route, &self.step, meter)? {
                     Some(leg) => self.cut_off(leg),
                     None => return Ok(true),
                 }
@@ -189,7 +189,7 @@ impl Search<'_, '_, '_> {
         let Some((other, true)) = self.grow(1 - grown, &meeting, permit, meter)? else { return Ok(false) };
         self.met = if grown == GOAL { [node, other] } else { [other, node] };
         self.write(route);
-        Ok(match permit.refused_leg(route, &self.step) {
+        Ok(match permit.refused_leg(route, &self.step, meter)? {
             Some(leg) => {
                 self.cut_off(leg);
                 false

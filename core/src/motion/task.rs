@@ -38,7 +38,7 @@ pub struct Motion<'a> {
     /// Distance from obstacles, metres, that the path keeps where there is room for it. At the release pose, and where the way
     /// is narrow, it is less, but never a collision.
     pub clearance: f32,
-    /// Largest distance between two waypoints.
+    /// Largest distance between two waypoints; at least 0.1 mm and 1 mrad.
     pub step: Distance,
     /// Limits for the times of the waypoints.
     pub speed: Speed,
@@ -107,18 +107,18 @@ impl Motion<'_> {
             return Err(MotionError::Workspace);
         }
         let positive = [
-            ("clearance", self.clearance, 0.1),
-            ("step.position", self.step.position, 1.0),
-            ("step.rotation", self.step.rotation, core::f32::consts::PI),
-            ("speed.linear", self.speed.linear, 100.0),
-            ("speed.angular", self.speed.angular, 100.0),
-            ("speed.linear_acceleration", self.speed.linear_acceleration, 1000.0),
-            ("speed.angular_acceleration", self.speed.angular_acceleration, 1000.0),
+            ("clearance", self.clearance, 0.0, 0.1),
+            ("step.position", self.step.position, LEAST_STEP.position, 1.0),
+            ("step.rotation", self.step.rotation, LEAST_STEP.rotation, core::f32::consts::PI),
+            ("speed.linear", self.speed.linear, 0.0, 100.0),
+            ("speed.angular", self.speed.angular, 0.0, 100.0),
+            ("speed.linear_acceleration", self.speed.linear_acceleration, 0.0, 1000.0),
+            ("speed.angular_acceleration", self.speed.angular_acceleration, 0.0, 1000.0),
         ];
-        if let Some((name, value, max)) =
-            positive.into_iter().find(|(_, value, max)| !(*value > 0.0 && value <= max))
+        if let Some((name, value, min, max)) =
+            positive.into_iter().find(|(_, value, min, max)| !(*value > 0.0 && value >= min && value <= max))
         {
-            return Err(MotionError::Value { name, value, max });
+            return Err(MotionError::Value { name, value, min, max });
         }
         let counts = [("samples", self.samples, 1, 10_000_000), ("nodes", self.nodes, 64, 1_000_000)];
         match counts.into_iter().find(|(_, value, min, max)| !(min..=max).contains(&value)) {
@@ -127,6 +127,10 @@ impl Motion<'_> {
         }
     }
 }
+
+/// Least [`Motion::step`]: finer than what robots repeat. A path of 100 m has a million such steps, and the caller is asked about
+/// each of them.
+const LEAST_STEP: Distance = Distance { position: 1e-4, rotation: 1e-3 };
 
 /// Whether a pose is a rigid motion to a place within the greatest coordinates.
 pub(super) fn is_rigid(pose: &Pose) -> bool {
@@ -156,12 +160,14 @@ pub enum MotionError {
     Retreat,
     /// The workspace is empty or not a number.
     Workspace,
-    /// A value is not in the range from above zero to `max`.
+    /// A value is not above zero, or not in the range from `min` to `max`.
     Value {
         /// Its field.
         name: &'static str,
         /// The value.
         value: f32,
+        /// The smallest one.
+        min: f32,
         /// The largest one.
         max: f32,
     },
@@ -195,8 +201,11 @@ impl fmt::Display for MotionError {
             Self::Workspace => f.write_str(
                 "the workspace needs a lower corner that is less than the upper one on every axis",
             ),
-            Self::Value { name, value, max } => {
+            Self::Value { name, value, min: 0.0, max } => {
                 write!(f, "{name} of the motion is {value}: it must be above 0 and at most {max}")
+            }
+            Self::Value { name, value, min, max } => {
+                write!(f, "{name} of the motion is {value}: it must be {min} to {max}")
             }
             Self::Count { name, value, min, max } => {
                 write!(f, "{name} of the motion is {value}: it must be {min} to {max}")

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::{Aabb, Cloud, Point, Pose, Vector};
-use crate::hanging::{HangingPose, Hung, Object, Request, Supporter};
+use crate::hanging::{Distance, HangingPose, Hung, Object, Request, Supporter};
 use crate::memory::Limits;
 use crate::test_shapes::{Shape, peg, prism, torus};
 use crate::{Monitor, Params, Stop};
@@ -538,6 +538,36 @@ fn the_work_limit_ends_the_queries_of_a_large_triangle() {
         assert_eq!(planned.path, Err(PlanFailure::Stopped(Stop::WorkLimit)));
         assert!(planned.work.distance_queries < 20_000, "{}", planned.work.distance_queries);
     });
+}
+
+/// Between two questions about poses of a leg, of which there are many where steps are short.
+#[test]
+fn a_cancel_ends_the_questions() {
+    let scene = Scene::on_peg();
+    scene.analyse(|object, supporter, params| {
+        let motion = Motion { step: Distance { position: 1e-4, rotation: 1e-3 }, ..Motion::DEFAULT };
+        let task = Task { object, supporter, request: &Request::ANY, params, motion };
+        let mut memory = vec![0; plan_bytes(&supporter.limits(), 0, motion.nodes)];
+        for cancelled_at in [5, 50] {
+            let (monitor, mut asked) = (Monitor::new(), 0);
+            let mut accepts = |_: &Pose| {
+                asked += 1;
+                if asked == cancelled_at {
+                    monitor.cancel();
+                }
+                true
+            };
+            let goal = scene.goal();
+            let planned = plan(&task, &goal, &mut [], &mut accepts, &mut memory, &monitor).unwrap();
+            assert_eq!(planned.path, Err(PlanFailure::Stopped(Stop::Cancelled)));
+            assert_eq!(asked, cancelled_at);
+        }
+    });
+    let step = Distance { position: 1e-12, rotation: 0.1 };
+    assert!(matches!(
+        Motion { step, ..Motion::DEFAULT }.validate(),
+        Err(MotionError::Value { name: "step.position", min: 1e-4, .. })
+    ));
 }
 
 /// A start so far away that a step is less than the rounding of the way to it: the search ends all the same.

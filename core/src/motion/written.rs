@@ -34,9 +34,11 @@ impl Written<'_> {
             return;
         }
         let parts = parts(leg, &self.step);
-        for part in 1..=parts {
+        let room = self.waypoints.len().saturating_sub(self.count).min(parts);
+        for part in 1..=room {
             self.push(&from.after(leg, part as f32 / parts as f32), centre);
         }
+        self.count += parts - room;
     }
 
     fn push(&mut self, place: &Placement, centre: &Point) {

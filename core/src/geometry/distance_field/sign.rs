@@ -142,6 +142,12 @@ impl Sides<'_, '_, '_> {
         Ok(self.surface.winding_number(point))
     }
 
+    /// Whether a node is inside by its own winding number.
+    fn is_point_inside(&mut self, brick: usize, node: usize) -> Result<bool, Stop> {
+        self.meter.distance_queries(1)?;
+        Ok(self.surface.is_inside(&self.point(brick, node)))
+    }
+
     fn unknown(&self, brick: usize) -> Nodes {
         ALL & !(self.sides[0][brick] | self.sides[1][brick])
     }
@@ -335,7 +341,7 @@ impl Sides<'_, '_, '_> {
         let (distances, triangles) = (&self.nearest.distances[brick], &self.nearest.triangles[brick]);
         // None is known only far from the mesh, where the side is known.
         let Some(frame) = self.frames.get(triangles[node] as usize) else {
-            return self.surface.is_inside(&self.point(brick, node));
+            return self.is_point_inside(brick, node);
         };
         let height = frame.height(&local);
         let is_above_face = height.abs() >= ABOVE_FACE * distances[node];
@@ -358,8 +364,7 @@ impl Sides<'_, '_, '_> {
         match *verdict {
             Some(inside) if is_above_face => Ok(inside),
             _ => {
-                self.meter.distance_queries(1)?;
-                let inside = self.surface.is_inside(&self.point(brick, node));
+                let inside = self.is_point_inside(brick, node)?;
                 if is_above_face {
                     *verdict = Some(inside);
                 }
