@@ -1,7 +1,7 @@
 //! What moves, among what, and how.
 
 use super::gripper::{Capsule, Gripper};
-use crate::geometry::{Aabb, MAX_COORDINATE, Pose, Vector};
+use crate::geometry::{Aabb, MAX_COORDINATE, Pose, Vector, is_rigid};
 use crate::hanging::{Distance, Object, Request, Supporter};
 use crate::params::Params;
 use core::fmt;
@@ -126,12 +126,6 @@ impl Motion<'_> {
             None => Ok(()),
         }
     }
-}
-
-/// Whether a pose is a rigid motion to a place within the greatest coordinates.
-pub(super) fn is_rigid(pose: &Pose) -> bool {
-    let length = pose.rotation.coords.norm();
-    pose.translation.vector.iter().all(|x| x.abs() <= MAX_COORDINATE) && (length - 1.0).abs() < 1e-3
 }
 
 impl Default for Motion<'_> {
