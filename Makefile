@@ -21,7 +21,7 @@ help:
 	@echo "make deb      build the Debian packages libhangpose3, libhangpose-dev and hangpose in build/"
 	@echo "make dist     build a release in build/dist/: archives for x86-64 and aarch64, packages, checksums"
 	@echo "make embedded run the C library on a Cortex-M7 and on aarch64 under qemu: with the bits of a desktop"
-	@echo "make trust    run the long checks of docs/TRUST.md: the same bits everywhere, cancels, the supply chain, fuzzing"
+	@echo "make trust    run the long checks of docs/TRUST.md: the same bits everywhere, cancels, sanitizers, the supply chain, fuzzing"
 	@echo "make abi      store the binary interface of this version in ffi/abi/"
 	@echo "make samples  regenerate samples/"
 	@echo "make header   regenerate include/hangpose.h from ffi/"
@@ -81,6 +81,8 @@ trust: embedded
 	@scripts/setup.sh trust
 	embedded/same_bits.sh
 	cargo run --release -p host-tests --bin cancel -- --limit 5
+	cargo run --release -p host-tests --bin worst -- --limit 500
+	scripts/sanitize.sh
 	scripts/supply.sh
 	scripts/reproducible.sh
 	$(MAKE) --no-print-directory fuzz T=300

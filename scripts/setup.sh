@@ -98,6 +98,13 @@ for target in "${targets[@]}"; do
     fi
 done
 
+# The source of Rust's core, which the sanitizers instrument with the library.
+if [ "${1:-}" = trust ] && ! [ -e "$(rustc --print sysroot)/lib/rustlib/src/rust/library/core" ] &&
+    ! { command -v rustup >/dev/null && rustup component add rust-src >/dev/null 2>&1; } &&
+    ! [ -e /usr/lib/rustlib/src/rust/library/core ]; then
+    missing+=(rustc-web cargo-web rust-web-src)
+fi
+
 [ ${#missing[@]} = 0 ] || apt "${missing[@]}"
 
 # The drawing of flame graphs, into the folder of build products.
@@ -122,4 +129,7 @@ if [ "${1:-}" = trust ]; then
     done
     oldest=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' "$tools/../../Cargo.toml")
     ! command -v rustup >/dev/null || rustup toolchain install "$oldest" --profile minimal >/dev/null 2>&1 || true
+    # Miri, which only nightly compilers have: scripts/sanitize.sh says so if it cannot be had.
+    ! command -v rustup >/dev/null || cargo +nightly miri --version >/dev/null 2>&1 ||
+        rustup toolchain install nightly --profile minimal --component miri,rust-src >/dev/null 2>&1 || true
 fi

@@ -45,10 +45,11 @@ cargo vendor --locked --versioned-dirs "$folder/source/vendor" 2>"$folder/log" >
     { cat "$folder/log" >&2; exit 1; }
 cut_off=()
 unshare --net --map-root-user true 2>/dev/null && cut_off=(unshare --net --map-root-user)
+# `set -e` does not hold on the left of ||.
 (
-    cd "$folder/source"
-    export CARGO_HOME=$folder/home CARGO_TARGET_DIR=$folder/target
-    "${cut_off[@]}" cargo rustc --quiet --frozen --release -p hangpose-ffi --features archive --crate-type staticlib
+    cd "$folder/source" &&
+    export CARGO_HOME=$folder/home CARGO_TARGET_DIR=$folder/target &&
+    "${cut_off[@]}" cargo rustc --quiet --frozen --release -p hangpose-ffi --features archive --crate-type staticlib &&
     "${cut_off[@]}" cargo check --quiet --frozen --workspace --all-targets
 ) || fail "the workspace does not build from vendored sources without a network"
 say "the workspace builds from vendored sources${cut_off[*]:+, with all networks taken away}"
@@ -56,7 +57,8 @@ say "the workspace builds from vendored sources${cut_off[*]:+, with all networks
 # ---- the oldest Rust
 oldest=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
 if command -v rustup >/dev/null && rustup run "$oldest" rustc --version >/dev/null 2>&1; then
-    CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$root/target}/msrv rustup run "$oldest" cargo check --quiet --locked --workspace
+    CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$root/target}/msrv rustup run "$oldest" cargo check --quiet --locked --workspace ||
+        fail "the workspace does not build with Rust $oldest, which Cargo.toml promises"
     say "the workspace builds with Rust $oldest"
 else
     say "Rust $oldest was NOT tried: rustup cannot install it here"

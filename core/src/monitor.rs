@@ -11,8 +11,9 @@ pub trait Threads: Sync {
 
 /// Lets another thread see how far a call is and stop it, bounds the work that each call may do, and lends it a second thread.
 ///
-/// The work limit counts rays and distance queries, not time, so a limited call gives the same answer on every
-/// machine. It is meant per call, not for all calls that share the monitor. A second thread changes no answer, either.
+/// The work limit counts rays and distance queries, winding numbers among them, not time, so a limited call gives the same answer on
+/// every machine. Filtering a cloud and its normals are not counted: each of its points is asked about a fixed number of times. The
+/// limit is meant per call, not for all calls that share the monitor. A second thread changes no answer, either.
 pub struct Monitor<'t> {
     progress: AtomicU32,
     cancelled: AtomicBool,

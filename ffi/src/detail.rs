@@ -132,6 +132,7 @@ mod tests {
             request(RequestError::On(RegionError::Index { index: u32::MAX, count: most })),
             request(RequestError::Approach),
             request(RequestError::Scene { point: most, position: worst }),
+            request(RequestError::Hung { index: most }),
             request(RequestError::Distinct),
             request(RequestError::Symmetry { index: most }),
             Failure::Motion(MotionError::Start),

@@ -399,6 +399,7 @@ impl From<PredictError> for Failure {
             PredictError::Params(error) => error.into(),
             PredictError::OutOfMemory(error) => error.into(),
             PredictError::NoDistanceField => Self::NoDistanceField,
+            PredictError::Release => Self::Pose { spot: Place::of("release").into() },
             // A request of a caller was checked before.
             PredictError::Request(error) => Self::Request { error, spot: Place::of("request").into() },
         }

@@ -313,6 +313,7 @@ fn request_place(error: RequestError, request: &Request) -> Place {
         RequestError::Scene { point, position } => {
             Place::of("request.scene_points").coordinate(Some(point), position)
         }
+        RequestError::Hung { index } => Place { index: Some(index), ..Place::of("request.hung.position") },
         RequestError::Symmetry { index } => {
             let fold = request.symmetries.and_then(|given| given.get(index)).map_or(0, |given| given.fold);
             let place = if fold == 1 || fold > HANGPOSE_MAX_FOLD {

@@ -139,6 +139,7 @@ pub(crate) fn request(py: Python<'_>, error: &RequestError) -> PyErr {
         RequestError::By(region) => ("by", at(region)),
         RequestError::Approach => ("approach", None),
         RequestError::Scene { point, .. } => ("scene", Some(*point)),
+        RequestError::Hung { index } => ("hung", Some(*index)),
         RequestError::Distinct => ("distinct", None),
         RequestError::Symmetry { index } => ("symmetries", Some(*index)),
     };
@@ -150,6 +151,7 @@ pub(crate) fn predict(py: Python<'_>, error: &PredictError) -> PyErr {
         PredictError::Params(error) => params(py, error),
         PredictError::Request(error) => request(py, error),
         PredictError::OutOfMemory(error) => value(py, "memory", &error.to_string()),
+        PredictError::Release => value(py, "pose", &error.to_string()),
         PredictError::NoDistanceField => value(py, "object", &error.to_string()),
     }
 }

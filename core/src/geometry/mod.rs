@@ -27,4 +27,6 @@ pub(crate) use statistics::{
 pub use symmetry::{MAX_FOLD, Symmetry};
 pub(crate) use symmetry::{Symmetries, least_angle};
 pub use vector::{MAX_COORDINATE, Point, Pose, Vector};
-pub(crate) use vector::{any_perpendicular, fibonacci_direction, rotate_about, rotation_by, unit_or};
+pub(crate) use vector::{
+    any_perpendicular, fibonacci_direction, is_rigid, rotate_about, rotation_by, unit_or,
+};

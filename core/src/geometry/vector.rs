@@ -13,6 +13,12 @@ pub type Pose = nalgebra::Isometry3<f32>;
 /// details of hand-held objects, and squared distances may overflow.
 pub const MAX_COORDINATE: f32 = 1e6;
 
+/// Whether a pose is a rigid motion to a place within the greatest coordinates.
+pub(crate) fn is_rigid(pose: &Pose) -> bool {
+    let length = pose.rotation.coords.norm();
+    pose.translation.vector.iter().all(|x| x.abs() <= MAX_COORDINATE) && (length - 1.0).abs() < 1e-3
+}
+
 /// `vector` scaled to unit length, or `otherwise` if its length is zero.
 pub(crate) fn unit_or(vector: Vector, otherwise: Vector) -> Vector {
     let length = vector.norm();

@@ -1,6 +1,7 @@
 //! Why an object or a supporter cannot be analysed, and why nothing can be predicted.
 
 use super::request::RequestError;
+use crate::geometry::MAX_COORDINATE;
 use crate::memory::OutOfMemory;
 use crate::monitor::{Stop, Unfinished};
 use crate::params::ParamsError;
@@ -65,6 +66,8 @@ pub enum PredictError {
     OutOfMemory(OutOfMemory),
     /// The request is invalid.
     Request(RequestError),
+    /// The pose at which the object is let go is too far away or not a number, or its rotation is not a unit quaternion.
+    Release,
     /// The params ask to let the object go, but it was analysed without [`voxels`](crate::Params::voxels).
     NoDistanceField,
 }
@@ -93,6 +96,10 @@ impl core::fmt::Display for PredictError {
             Self::Params(error) => error.fmt(f),
             Self::OutOfMemory(error) => error.fmt(f),
             Self::Request(error) => error.fmt(f),
+            Self::Release => write!(
+                f,
+                "the pose of the release needs a position within ±{MAX_COORDINATE} metres and a unit quaternion"
+            ),
             Self::NoDistanceField => f.write_str(
                 "the object was analysed with voxels = 0: analyse it and the supporter with the params of the prediction",
             ),

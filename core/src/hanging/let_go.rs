@@ -1,7 +1,7 @@
 //! Simulates the release of an object at any pose, predicted or not.
 
 use super::{Object, PredictError, Supporter, predict_bytes};
-use crate::geometry::Pose;
+use crate::geometry::{Pose, is_rigid};
 use crate::mechanics::{Fate, Sleep, Support, swing_out};
 use crate::memory::Arena;
 use crate::monitor::{Meter, Monitor, Stop};
@@ -29,6 +29,9 @@ pub fn let_go(
     monitor: &Monitor,
 ) -> Result<Result<LetGo, Stop>, PredictError> {
     params.validate()?;
+    if !is_rigid(release) {
+        return Err(PredictError::Release);
+    }
     let body = object.body().ok_or(PredictError::NoDistanceField)?;
     let support = supporter.support();
     let mut arena = Arena::new(memory, predict_bytes(&supporter.limits()))?;

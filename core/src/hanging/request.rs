@@ -3,7 +3,7 @@
 use super::Object;
 use super::region::{Region, RegionError};
 use super::watch::Watch;
-use crate::geometry::{MAX_COORDINATE, MAX_FOLD, Pose, Symmetry, Vector};
+use crate::geometry::{MAX_COORDINATE, MAX_FOLD, Pose, Symmetry, Vector, is_rigid};
 use crate::mechanics::{Kind, Kinds};
 use core::fmt;
 
@@ -106,6 +106,9 @@ impl<'a> Request<'a> {
         if let Some(point) = self.scene.iter().position(|point| !is_usable(point)) {
             return Err(RequestError::Scene { point, position: self.scene[point] });
         }
+        if let Some(index) = self.hung.iter().position(|hung| !is_rigid(&hung.pose)) {
+            return Err(RequestError::Hung { index });
+        }
         let Distance { position, rotation } = self.distinct;
         if !((0.0..=10.0).contains(&position) && (0.0..=core::f32::consts::PI).contains(&rotation)) {
             return Err(RequestError::Distinct);
@@ -165,6 +168,11 @@ pub enum RequestError {
         /// Its coordinates.
         position: [f32; 3],
     },
+    /// The pose of an object that hangs already is too far away or not a number, or its rotation is not a unit quaternion.
+    Hung {
+        /// Index of the object.
+        index: usize,
+    },
     /// A distance between poses is negative, too large, or not a number.
     Distinct,
     /// A symmetry has no axis, or a fold that is 1 or too large.
@@ -186,6 +194,10 @@ impl fmt::Display for RequestError {
             Self::Scene { point, position } => write!(
                 f,
                 "point {point} of the scene is at {position:?}: every coordinate must be a number of metres within ±{MAX_COORDINATE}"
+            ),
+            Self::Hung { index } => write!(
+                f,
+                "object {index} that hangs already needs a position within ±{MAX_COORDINATE} metres and a unit quaternion"
             ),
             Self::Distinct => f.write_str(
                 "the distance between poses must be 0 to 10 metres and 0 to π radians",

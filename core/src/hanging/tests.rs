@@ -730,6 +730,30 @@ fn any_pose_can_be_let_go() {
 }
 
 #[test]
+fn poses_that_are_no_rigid_motions_are_refused() {
+    let (scene, params) = (Scene::key_on_peg(), product());
+    scene.analyse(&params, &Monitor::new(), |object, supporter| {
+        let quaternion = |w: f32| UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, 0.0, 0.0, 0.0));
+        let mut memory = vec![0; predict_bytes(&scene.limits(&params))];
+        for (pose, is_rigid) in [
+            (Pose::translation(0.0, 0.5, 1e6), true),
+            (Pose::translation(0.0, 0.5, 1.1e6), false),
+            (Pose::translation(f32::NAN, 0.5, 0.0), false),
+            (Pose::from_parts(Translation3::identity(), quaternion(-1.0)), true),
+            (Pose::from_parts(Translation3::identity(), quaternion(1.1)), false),
+            (Pose::from_parts(Translation3::identity(), quaternion(f32::NAN)), false),
+        ] {
+            let gone = let_go(object, supporter, &pose, &params, &mut memory, &Monitor::new());
+            assert_eq!(gone.err(), (!is_rigid).then_some(PredictError::Release), "{pose}");
+            let hung = [Hung { object, pose: Pose::identity() }, Hung { object, pose }];
+            let request = Request { hung: &hung, ..Request::ANY };
+            let expected = if is_rigid { Ok(()) } else { Err(RequestError::Hung { index: 1 }) };
+            assert_eq!(request.validate(), expected, "{pose}");
+        }
+    });
+}
+
+#[test]
 fn whoever_watches_sees_each_release_and_how_it_ended() {
     let (scene, params) = (Scene::key_on_peg(), product());
     scene.analyse(&params, &Monitor::new(), |object, supporter| {

@@ -78,6 +78,8 @@ impl From<PredictError> for PlanError {
             PredictError::Params(error) => Self::Params(error),
             PredictError::OutOfMemory(error) => Self::OutOfMemory(error),
             PredictError::Request(error) => Self::Request(error),
+            // A plan ends at its goal, and lets nothing go elsewhere.
+            PredictError::Release => Self::Goal,
             PredictError::NoDistanceField => Self::NoDistanceField { hung: None },
         }
     }

@@ -1,7 +1,7 @@
 //! What moves, among what, and how.
 
 use super::gripper::{Capsule, Gripper};
-use crate::geometry::{Aabb, MAX_COORDINATE, Pose, Vector};
+use crate::geometry::{Aabb, MAX_COORDINATE, Pose, Vector, is_rigid};
 use crate::hanging::{Distance, Object, Request, Supporter};
 use crate::params::Params;
 use core::fmt;
@@ -131,12 +131,6 @@ impl Motion<'_> {
 /// Least [`Motion::step`]: finer than what robots repeat. A path of 100 m has a million such steps, and the caller is asked about
 /// each of them.
 const LEAST_STEP: Distance = Distance { position: 1e-4, rotation: 1e-3 };
-
-/// Whether a pose is a rigid motion to a place within the greatest coordinates.
-pub(super) fn is_rigid(pose: &Pose) -> bool {
-    let length = pose.rotation.coords.norm();
-    pose.translation.vector.iter().all(|x| x.abs() <= MAX_COORDINATE) && (length - 1.0).abs() < 1e-3
-}
 
 impl Default for Motion<'_> {
     fn default() -> Self {

@@ -5,6 +5,7 @@
 
 #include <hangpose.h>
 #include <pthread.h>
+#include <stdatomic.h>
 
 #include "fixture.h"
 
@@ -388,7 +389,7 @@ static void overlaps_of_depth(void) {
 }
 
 // A thread finds the surface while another fuses images: one of them is refused.
-static volatile int is_over;
+static atomic_int is_over;
 static void *find_again_and_again(void *tally) {
   unsigned char *mine = guarded(surface_size, 0);
   while (!is_over) {

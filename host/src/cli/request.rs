@@ -229,7 +229,8 @@ impl Wishes {
             RequestError::Approach => "--approach",
             RequestError::Scene { .. } => "--scene",
             RequestError::Distinct => "--distinct",
-            // The command gives none.
+            // The command gives none of these.
+            RequestError::Hung { .. } => "hung",
             RequestError::Symmetry { .. } => "symmetries",
         }
     }

@@ -107,6 +107,24 @@ fn a_kill_at_any_moment_leaves_a_whole_result_or_none() {
     assert!(kills > MOMENTS / 4, "{kills} of {MOMENTS} runs were killed");
 }
 
+/// What has changed between the look at a file and its reading: the kernel's own files say 4096 bytes or none and hold others.
+#[test]
+fn a_file_of_another_length_than_it_says_is_read_to_its_end() {
+    let scene = Scene::new();
+    for (name, kernel) in [("shorter.ply", "/sys/devices/system/cpu/online"), ("longer.ply", "/proc/version")]
+    {
+        let path = scene.path(name);
+        std::os::unix::fs::symlink(kernel, &path).unwrap();
+        let said = std::fs::metadata(&path).unwrap().len();
+        assert_ne!(said, std::fs::read(&path).unwrap().len() as u64, "{kernel}");
+        let run = run!("inspect", path);
+        assert_eq!(run.status, Some(1), "{}", run.stderr);
+        let is_named =
+            run.stderr.contains(name) && run.stderr.contains("PLY") && !run.stderr.contains("empty");
+        assert!(is_named && run.stdout.is_empty(), "{}", run.stderr);
+    }
+}
+
 #[test]
 fn a_file_that_changes_while_it_is_read_is_an_input_like_any_other() {
     let scene = Scene::new();
