@@ -45,7 +45,7 @@ for target in "${targets[@]}"; do
         times
     ) >"$log" 2>&1
     rm "$log.failed" 2>/dev/null && passed=no
-    runs=$(grep -aoE 'number_of_executed_units: *[0-9]+' "$log" | grep -oE '[0-9]+$' || echo 0)
+    runs=$(grep -aoE 'number_of_executed_units: *[0-9]+' "$log" | tail -n 1 | grep -oE '[0-9]+$' || echo 0)
     covered=$(grep -aoE 'cov: [0-9]+' "$log" | tail -n 1 | grep -oE '[0-9]+' || echo 0)
     used=$(tail -n 1 "$log" | sed 's/[ms]/ /g' | awk '{ print int(60 * $1 + $2) }')
     printf '%s\t%s\t%s\t%s\n' "$target" "$used" "$runs" "$covered" >>"$folder/runs.tsv"
