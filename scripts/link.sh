@@ -121,7 +121,7 @@ wait $sanitized
 # ---- a caller with floating-point traps; without masking them it must be stopped, or the test would say nothing
 quiet gcc -std=gnu11 $warnings $flags -Iexamples-c tests/c/traps.c $static_libs -lm -o traps
 quiet ./traps
-if (./traps unmasked) >traps.log 2>&1; then fail "no trap stops a caller that does not mask them"; fi
+if { ./traps unmasked; } >traps.log 2>&1; then fail "no trap stops a caller that does not mask them"; fi
 say "traps: $(./traps)"
 
 # ---- a header of another version links but is refused at run time; CMake does not find another version
