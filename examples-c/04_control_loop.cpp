@@ -55,7 +55,9 @@ static void predictor(Shared &shared) {
       const auto found = hangpose::predict(*ring, *peg, params, best, &shared.monitor);
       shared.status = found ? found->status : found.error().status();
     }
-    shared.state.store(Shared::ANSWERED, std::memory_order_release);
+    // If the loop has ended meanwhile, that stays so.
+    auto expected = Shared::ASKED;
+    if (!shared.state.compare_exchange_strong(expected, Shared::ANSWERED, std::memory_order_release)) return;
   }
 }
 
