@@ -74,7 +74,7 @@ lane() {
     for (( ; index < ${#programs[@]}; index += 2)); do
         read -r source arguments <<<"${programs[index]}"
         program=$(compiled "$kind" "$source" $options)
-        quiet "$(basename "$program")" $runner "$program" $arguments
+        quiet "$(basename "$program")" timeout 600 $runner "$program" $arguments
     done
 }
 # Compiles and runs programs, two at a time: each KIND OPTIONS RUNNER PROGRAM...
