@@ -2,6 +2,7 @@
 //! slowly than it runs: every way in which the interface turns pointers into references and keeps models in the caller's memory.
 //! All other tests have larger models.
 
+use fuzz::calls::second_first;
 use fuzz::memory::Block;
 use hangpose_ffi::*;
 use std::ffi::c_void;
@@ -23,21 +24,6 @@ fn room(bytes: usize) -> (Block, *mut c_void, usize) {
     let mut block = Block::new(bytes, 1);
     let pointer = block.memory().as_mut_ptr().cast();
     (block, pointer, bytes)
-}
-
-/// Stands for two threads: the second part is done before the first begins.
-unsafe extern "C" fn second_first(
-    _: *mut c_void,
-    first: hangpose_task,
-    first_argument: *mut c_void,
-    second: hangpose_task,
-    second_argument: *mut c_void,
-) {
-    // SAFETY: the library gives functions with their arguments.
-    unsafe {
-        second.expect("a function")(second_argument);
-        first.expect("a function")(first_argument);
-    }
 }
 
 unsafe extern "C" fn accept_all(_: *mut c_void, _: *const f32, _: *const f32) -> i32 {

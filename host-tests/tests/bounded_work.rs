@@ -7,9 +7,8 @@ use hangpose::memory::Limits;
 use hangpose::motion::{Motion, Task, Waypoint, plan, plan_bytes};
 use hangpose::{Candidates, Monitor, Params, Stop, Work};
 use host_tests::performance::adversarial::{clouds, meshes};
-use host_tests::performance::refine::{Triangles, refine, weld};
-use host_tests::performance::room::scatter;
-use host_tests::tables::case::made;
+use host_tests::performance::ordinary;
+use host_tests::performance::refine::Triangles;
 
 const TRIANGLES: usize = 1_500;
 const POINTS: usize = 1_000;
@@ -118,9 +117,8 @@ fn check_pair(name: &str, mesh: &Triangles, points: &[[f32; 3]]) {
 }
 
 fn ordinary() -> (Triangles, Vec<[f32; 3]>) {
-    let case = made(22, 61).into_iter().find(|case| case.object_kind == "mug").unwrap();
-    let mug = refine(weld(&case.object.vertices, &case.object.triangles), TRIANGLES);
-    (mug, scatter(&case.supporter.vertices, &case.supporter.triangles, POINTS).0)
+    let case = ordinary::ordinary();
+    (ordinary::object(&case, TRIANGLES), ordinary::supporter(&case, POINTS).0)
 }
 
 #[test]

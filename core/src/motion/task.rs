@@ -6,6 +6,10 @@ use crate::hanging::{Distance, Object, Request, Supporter};
 use crate::params::Params;
 use core::fmt;
 
+/// Finest [`Motion::step`]: finer than what robots repeat. A path of 100 m has a million such steps, and the caller is asked about
+/// each of them.
+const FINEST_STEP: Distance = Distance { position: 1e-4, rotation: 1e-3 };
+
 /// An object that moves, the things that it must not touch, and how it moves.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
@@ -108,8 +112,8 @@ impl Motion<'_> {
         }
         let positive = [
             ("clearance", self.clearance, 0.0, 0.1),
-            ("step.position", self.step.position, LEAST_STEP.position, 1.0),
-            ("step.rotation", self.step.rotation, LEAST_STEP.rotation, core::f32::consts::PI),
+            ("step.position", self.step.position, FINEST_STEP.position, 1.0),
+            ("step.rotation", self.step.rotation, FINEST_STEP.rotation, core::f32::consts::PI),
             ("speed.linear", self.speed.linear, 0.0, 100.0),
             ("speed.angular", self.speed.angular, 0.0, 100.0),
             ("speed.linear_acceleration", self.speed.linear_acceleration, 0.0, 1000.0),
@@ -127,10 +131,6 @@ impl Motion<'_> {
         }
     }
 }
-
-/// Least [`Motion::step`]: finer than what robots repeat. A path of 100 m has a million such steps, and the caller is asked about
-/// each of them.
-const LEAST_STEP: Distance = Distance { position: 1e-4, rotation: 1e-3 };
 
 impl Default for Motion<'_> {
     fn default() -> Self {

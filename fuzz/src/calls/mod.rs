@@ -23,7 +23,11 @@ const WORK: [u64; 5] = [WITH_THREADS, if cfg!(miri) { 200 } else { 20_000 }, 500
 const WITH_THREADS: u64 = if cfg!(miri) { 100 } else { 4_000 };
 
 /// Stands for two threads: the second part is done before the first begins.
-unsafe extern "C" fn second_first(
+///
+/// # Safety
+///
+/// The library gives functions with their arguments.
+pub unsafe extern "C" fn second_first(
     _: *mut c_void,
     first: hangpose_task,
     first_argument: *mut c_void,

@@ -13,18 +13,14 @@ use hangpose::perception::completion::{Completion, CompletionSettings, room};
 use hangpose::perception::isosurface::Isosurface;
 use hangpose::perception::volume::{Volume, VolumeLimits, VolumeSettings};
 use hangpose::{Monitor, Params, suggested_voxel};
-use host_tests::performance::refine::{Triangles, refine, weld};
-use host_tests::performance::room::{room as walls, scatter};
+use host_tests::performance::ordinary;
+use host_tests::performance::refine::{Triangles, refine};
+use host_tests::performance::room::room as walls;
 use host_tests::scan::{Spec, frames};
 use host_tests::shapes::Random;
 use host_tests::solid::Solid;
-use host_tests::tables::case::made;
 use std::time::{Duration, Instant};
 
-/// Kind of the generated object, and the pairs that it is the first of.
-const OBJECT: &str = "mug";
-const PAIRS: usize = 22;
-const SEED: u64 = 61;
 /// Waypoints of a path at most.
 const WAYPOINTS: usize = 2_000;
 /// Greatest depth of the images, metres.
@@ -147,12 +143,11 @@ impl Probe {
 
 fn main() -> Result<()> {
     let mut probe = Probe { arguments: Arguments::parse(), slowest: 0.0 };
-    let case = made(PAIRS, SEED).into_iter().find(|case| case.object_kind == OBJECT);
-    let case = case.context("no such pair is generated")?;
+    let case = ordinary::ordinary();
     let (default, paper, monitor) = (Params::default(), Params::paper(), Monitor::new());
     println!("| call | duration | median | 99 % | most, ms | slowest at |\n|---|--:|--:|--:|--:|--:|");
 
-    let object_mesh = refine(weld(&case.object.vertices, &case.object.triangles), 20_000);
+    let object_mesh = ordinary::object(&case, 20_000);
     let fine = refine(object_mesh.clone(), 200_000);
     let mut open = object_mesh.clone();
     open.1.truncate(open.1.len() * 3 / 4);
@@ -161,7 +156,7 @@ fn main() -> Result<()> {
     probe.analyse_object("object, 200,000 triangles", &fine, &default)?;
     probe.analyse_object("object, open mesh", &open, &default)?;
 
-    let (points, normals) = scatter(&case.supporter.vertices, &case.supporter.triangles, 10_000);
+    let (points, normals) = ordinary::supporter(&case, 10_000);
     let cloud = Cloud::new(&points, Some(&normals))?;
     let bare = Cloud::new(&points, None)?;
     let around = [points.as_slice(), &walls(300_000)].concat();

@@ -2,7 +2,7 @@
 //!
 //! With `--limit` the command fails where a call takes more than so many times as long as the same call on the ordinary pair.
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 use clap::Parser;
 use hangpose::geometry::{Cloud, Mesh};
 use hangpose::hanging::{HangingPose, Object, Request, Supporter, predict, predict_bytes};
@@ -10,16 +10,11 @@ use hangpose::memory::Limits;
 use hangpose::motion::{Motion, Task, Waypoint, plan, plan_bytes};
 use hangpose::{Monitor, Params};
 use host_tests::performance::adversarial::{clouds, meshes};
-use host_tests::performance::refine::{Triangles, refine, weld};
-use host_tests::performance::room::scatter;
-use host_tests::tables::case::made;
+use host_tests::performance::ordinary;
+use host_tests::performance::refine::Triangles;
 use std::collections::{BTreeMap, HashMap};
 use std::time::Instant;
 
-/// Kind of the ordinary object, and the pairs that it is the first of.
-const OBJECT: &str = "mug";
-const PAIRS: usize = 22;
-const SEED: u64 = 61;
 /// Waypoints of a path at most.
 const WAYPOINTS: usize = 2_000;
 
@@ -132,10 +127,9 @@ fn outcome<T, E: std::fmt::Display>(result: &Result<T, E>) -> String {
 
 fn main() -> anyhow::Result<()> {
     let arguments = Arguments::parse();
-    let case = made(PAIRS, SEED).into_iter().find(|case| case.object_kind == OBJECT);
-    let case = case.context("no such pair is generated")?;
-    let mug = refine(weld(&case.object.vertices, &case.object.triangles), arguments.triangles);
-    let (hook, _) = scatter(&case.supporter.vertices, &case.supporter.triangles, arguments.points);
+    let case = ordinary::ordinary();
+    let mug = ordinary::object(&case, arguments.triangles);
+    let (hook, _) = ordinary::supporter(&case, arguments.points);
     println!("| input | call | ms | times the ordinary | result |\n|---|---|--:|--:|---|");
     let mut worst = Worst { ordinary: HashMap::new(), largest: BTreeMap::new() };
     worst.pair("ordinary", &mug, &hook, &arguments);

@@ -2,6 +2,7 @@
 
 use crate::performance::refine::{Triangles, refine, weld};
 use crate::shapes::Random;
+use crate::shapes::vector::{add, scale, single, unit};
 use std::f64::consts::TAU;
 
 /// Length of a shape along its longest side, metres, where its name does not say another.
@@ -49,7 +50,7 @@ pub fn clouds(count: usize) -> Vec<(&'static str, Vec<[f32; 3]>)> {
         ("on one line", of(&mut |_, part| [SIZE * part, 0.0, 0.0])),
         ("copies of one point", of(&mut |_, _| [0.01, 0.02, 0.03])),
         ("filled ball", of(&mut |random, _| inside(random, SIZE))),
-        ("sphere", of(&mut |random, _| direction(random).map(|x| 0.5 * SIZE * x))),
+        ("sphere", of(&mut |random, _| scale(direction(random), 0.5 * SIZE))),
         (
             "comb",
             of(&mut |random, part| {
@@ -78,38 +79,33 @@ pub fn clouds(count: usize) -> Vec<(&'static str, Vec<[f32; 3]>)> {
             "distances of 0.1 µm to 0.1 m",
             of(&mut |random, _| {
                 let distance = SIZE * 10_f64.powf(random.range(-6.0, 0.0));
-                direction(random).map(|x| distance * x)
+                scale(direction(random), distance)
             }),
         ),
     ]
 }
 
 fn direction(random: &mut Random) -> [f64; 3] {
-    let v = [0; 3].map(|_| random.gaussian());
-    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-    v.map(|x| x / length)
+    unit([0; 3].map(|_| random.gaussian()))
 }
 
 /// A point of a ball of this diameter.
 fn inside(random: &mut Random, diameter: f64) -> [f64; 3] {
     let radius = 0.5 * diameter * random.range(0.0, 1.0).cbrt();
-    direction(random).map(|x| radius * x)
+    scale(direction(random), radius)
 }
 
 /// A triangle of this size somewhere in the room of the shape.
 fn small(random: &mut Random, size: f64) -> [[f64; 3]; 3] {
     let at = inside(random, SIZE);
-    [0; 3].map(|_| {
-        let corner = inside(random, size);
-        [0, 1, 2].map(|k| at[k] + corner[k])
-    })
+    [0; 3].map(|_| add(at, inside(random, size)))
 }
 
 /// A sliver as long as the shape, through the origin.
 fn needle(random: &mut Random) -> [[f64; 3]; 3] {
-    let to = direction(random).map(|x| 0.5 * SIZE * x);
+    let to = scale(direction(random), 0.5 * SIZE);
     let beside = inside(random, 1e-4);
-    [to.map(|x| -x), to, [0, 1, 2].map(|k| to[k] + beside[k])]
+    [scale(to, -1.0), to, add(to, beside)]
 }
 
 fn huge() -> [[f64; 3]; 3] {
@@ -223,13 +219,11 @@ fn fractal(count: usize) -> Triangles {
     let (mut places, mut size) = (vec![[0.0; 3]], 0.5 * SIZE);
     while 4 * 4 * places.len() <= count {
         size *= 0.5;
-        places = places
-            .iter()
-            .flat_map(|place| corners.map(|corner| [0, 1, 2].map(|k| place[k] + size * corner[k])))
-            .collect();
+        places =
+            places.iter().flat_map(|place| corners.map(|corner| add(*place, scale(corner, size)))).collect();
     }
     let (vertices, triangles) = joined(places.iter().map(|place| {
-        let vertices = corners.map(|corner| [0, 1, 2].map(|k| (place[k] + size * corner[k]) as f32));
+        let vertices = corners.map(|corner| single(add(*place, scale(corner, size))));
         (vertices.to_vec(), vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
     }));
     weld(&vertices, &triangles)

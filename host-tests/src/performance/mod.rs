@@ -5,6 +5,7 @@ pub mod export;
 pub mod growth;
 #[cfg(feature = "peers")]
 pub mod nanoflann;
+pub mod ordinary;
 pub mod primitives;
 pub mod refine;
 pub mod room;

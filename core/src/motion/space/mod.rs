@@ -273,7 +273,7 @@ impl<'a> Space<'a> {
                     query.surface(hung.object.surface(), &hung.pose, Obstacle::Hung(index));
                 });
             }
-            // A pose that is far from everything counts as well, so that a work limit ends the longest way.
+            // What is far from everything counts as well, here and below, so that a work limit ends the longest way.
             let queries = query.queries.max(1);
             meter.distance_queries(queries)?;
         }
@@ -291,7 +291,7 @@ impl<'a> Space<'a> {
             if let Some((body, pose)) = &obstacles.rested {
                 query.field(body.field, pose, Obstacle::Object);
             }
-            meter.distance_queries(query.queries)?;
+            meter.distance_queries(query.queries.max(1))?;
         }
         Ok(())
     }
