@@ -116,6 +116,12 @@ impl<'a, 's> Motion<'a, 's> {
             shift += shift_out;
             turn += turn_out;
         }
+        // The impulses on a body that is kilometres away from what it touches grow beyond all numbers. It stays where it was, and
+        // rests nowhere.
+        if !(shift.norm_squared() + turn.norm_squared()).is_finite() {
+            self.touches = false;
+            return Ok(());
+        }
         self.neighbourhood.record_motion(state, &shift, &turn);
         state.advance(&shift, &turn);
         Ok(())
