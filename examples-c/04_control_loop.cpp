@@ -69,7 +69,7 @@ int main() {
   auto next = clock::now(), latest = clock::duration::zero() + next;
   auto late = clock::duration::zero();
   shared.state.store(Shared::ASKED, std::memory_order_release);
-  for (; ticks < 60000; ++ticks) {
+  for (; ticks < 600000; ++ticks) {
     next += std::chrono::milliseconds(1);
     std::this_thread::sleep_until(next);
     latest = clock::now();
