@@ -1,4 +1,5 @@
-//! Measures how soon each call returns after another thread has cancelled it, at many moments spread over the call.
+//! Measures how soon each call returns after another thread has cancelled it, at many moments spread over the call: the
+//! processor time of its thread until then, so that other programs do not count.
 //!
 //! Prints the most and the 99th percentile, and when the call is slowest to answer. With `--limit` the command fails where the
 //! 99th percentile of a call is larger.
@@ -14,17 +15,23 @@ use hangpose::perception::isosurface::Isosurface;
 use hangpose::perception::volume::{Volume, VolumeLimits, VolumeSettings};
 use hangpose::{Monitor, Params, suggested_voxel};
 use host_tests::performance::ordinary;
+use host_tests::performance::processor_time::ThreadClock;
 use host_tests::performance::refine::{Triangles, refine};
 use host_tests::performance::room::room as walls;
 use host_tests::scan::{Spec, frames};
 use host_tests::shapes::Random;
 use host_tests::solid::Solid;
+use std::sync::Barrier;
 use std::time::{Duration, Instant};
 
 /// Waypoints of a path at most.
 const WAYPOINTS: usize = 2_000;
 /// Greatest depth of the images, metres.
 const MAX_DEPTH: f32 = 5.0;
+
+/// Greatest difference between the processor time just before a cancel and just after it. At a greater one, the canceller was
+/// interrupted, and the moment does not count.
+const MAX_DOUBT: Duration = Duration::from_micros(100);
 
 #[derive(Parser)]
 #[command(about)]
@@ -52,6 +59,7 @@ impl Probe {
         if !name.contains(&self.arguments.only) {
             return;
         }
+        let Some(clock) = ThreadClock::of_this_thread() else { return };
         let mut duration = Duration::MAX;
         for _ in 0..2 {
             let start = Instant::now();
@@ -62,23 +70,30 @@ impl Probe {
             .filter_map(|moment| {
                 let monitor = Monitor::new();
                 let at = duration * moment / self.arguments.moments;
-                let start = Instant::now();
-                let (cancelled, returned) = std::thread::scope(|scope| {
+                let both = Barrier::new(2);
+                std::thread::scope(|scope| {
                     let canceller = scope.spawn(|| {
+                        both.wait();
+                        let start = Instant::now();
                         while start.elapsed() < at {
                             std::hint::spin_loop();
                         }
+                        let before = clock.now()?;
                         monitor.cancel();
-                        Instant::now()
+                        let after = clock.now()?;
+                        (after - before <= MAX_DOUBT).then_some(before)
                     });
+                    both.wait();
                     call(&monitor);
-                    let returned = Instant::now();
-                    (canceller.join().ok(), returned)
-                });
-                Some(((returned.checked_duration_since(cancelled?)?).as_secs_f64() * 1000.0, moment))
+                    let returned = clock.now()?;
+                    let used = returned.checked_sub(canceller.join().ok()??)?;
+                    Some((used.as_secs_f64() * 1000.0, moment))
+                })
             })
             .collect();
         answers.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // A call may be over before it is cancelled, but not often.
+        assert!(4 * answers.len() > self.arguments.moments as usize, "{name}: too few cancels were measured");
         let Some(&(most, when)) = answers.last() else { return };
         let percentile = answers[(answers.len() - 1) * 99 / 100].0;
         self.slowest = self.slowest.max(percentile);

@@ -7,6 +7,7 @@ pub mod growth;
 pub mod nanoflann;
 pub mod ordinary;
 pub mod primitives;
+pub mod processor_time;
 pub mod refine;
 pub mod room;
 pub mod stages;
