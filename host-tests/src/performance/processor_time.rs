@@ -1,6 +1,5 @@
 //! The processor time that a thread has used, which other programs do not change. This file has the unsafe code of it.
 
-use std::mem::zeroed;
 use std::time::Duration;
 
 /// The clock of the processor time of one thread.
@@ -18,8 +17,7 @@ impl ThreadClock {
 
     /// Processor time that the thread has used; `None` if it has ended.
     pub fn now(self) -> Option<Duration> {
-        // SAFETY: zeros are a valid time.
-        let mut time: libc::timespec = unsafe { zeroed() };
+        let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
         // SAFETY: the system checks the clock and writes to a variable of the right type.
         let status = unsafe { libc::clock_gettime(self.0, &raw mut time) };
         let (seconds, nanoseconds) = (u64::try_from(time.tv_sec).ok()?, u32::try_from(time.tv_nsec).ok()?);
