@@ -93,9 +93,12 @@ fn release(
         candidates.discount(&candidate, if stays { REST_SHARE } else { 1.0 });
         let counts = &settling.counts;
         let has_enough = counts.firm_as_preferred >= firm_enough || settling.is_saturated();
-        let is_long = ATTEMPT_DIVISOR * (attempt + 1) >= attempts
-            || meter.work.distance_queries - queries_before > ENOUGH_QUERIES;
-        if has_enough || counts.probable > 0 && is_long {
+        let has_tried_enough = ATTEMPT_DIVISOR * (attempt + 1) >= attempts;
+        let queries = meter.work.distance_queries - queries_before;
+        if has_enough
+            || counts.probable > 0 && has_tried_enough
+            || settling.has_reliable && queries > ENOUGH_QUERIES
+        {
             break;
         }
         // Caps alone are no reason to stop, but to look elsewhere.

@@ -77,6 +77,8 @@ pub(super) struct Settling<'a> {
     best: (f32, f32),
     /// Number of releases that came to rest since then and were no better.
     no_better: usize,
+    /// Whether a pose so far is reliable, as far as what is unseen allows.
+    pub(super) has_reliable: bool,
 }
 
 // Tolerances: a cloud is no more exact than these.
@@ -146,6 +148,7 @@ impl<'a> Settling<'a> {
             counts: SettlingCounts::default(),
             best: (0.0, 0.0),
             no_better: 0,
+            has_reliable: false,
         })
     }
 
@@ -251,6 +254,7 @@ impl<'a> Settling<'a> {
         }
         self.counts.probable += 1;
         self.count_firm(&rest);
+        self.has_reliable |= probability::is_reliable(rest.probability, &rest.unseen);
         let pose = HangingPose { pose, rest: Some(rest), matched: start.matched };
         let merit = self.merit(&pose);
         if merit > (1.0 + CLEARLY_BETTER) * self.best.0 {
