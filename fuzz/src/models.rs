@@ -450,7 +450,8 @@ fn check_object(object: &Object, mesh: &Mesh) {
     }
     for contact in object.places().contacts() {
         assert!(
-            (contact.normal.norm() - 1.0).abs() < 1e-3 && (contact.bar_direction.norm() - 1.0).abs() < 1e-3
+            (contact.normal.norm() - 1.0).abs() < 1e-3 && (contact.bar_direction.norm() - 1.0).abs() < 1e-3,
+            "{contact:?}"
         );
         assert!(contact.position.iter().all(|x| x.is_finite()) && contact.capture >= 0.0);
     }
@@ -472,7 +473,8 @@ fn check_supporter(supporter: &Supporter, given: usize) {
     assert!(supporter.guessed() <= kept.len() && kept.len() <= 2 * given + 1, "{} of {given}", kept.len());
     for contact in supporter.places().contacts() {
         assert!(
-            (contact.normal.norm() - 1.0).abs() < 1e-3 && (contact.bar_direction.norm() - 1.0).abs() < 1e-3
+            (contact.normal.norm() - 1.0).abs() < 1e-3 && (contact.bar_direction.norm() - 1.0).abs() < 1e-3,
+            "{contact:?}"
         );
     }
 }
