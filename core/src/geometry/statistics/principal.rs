@@ -53,7 +53,7 @@ mod tests {
             assert!(of_steps(step).cross(&Vector::new(0.6, 0.0, -0.8)).norm() < 1e-3, "{step}");
         }
         // The variance of such steps is a number of a few bits, or zero.
-        for step in [1e-10, 3e-22, 1e-23, 0.0] {
+        for step in [1e-10, 1e-11, 3e-12, 0.0] {
             assert!((of_steps(step).norm() - 1.0).abs() < 1e-5, "{step}");
         }
     }
