@@ -11,10 +11,11 @@ use crate::monitor::{Meter, Stop, Unfinished};
 /// the patches that the mechanics fits, and about the noise of a good depth camera.
 const CUBE: f32 = 0.001;
 /// Edge of the cubes within which the points on a large plane are merged, metres. Nothing hangs there, and a plane needs few
-/// points to stop an object: less than the mechanics bridges.
-const PLANE_CUBE: f32 = 0.01;
-/// Edge of the cubes within which the points of a large plane are merged far from all that is not on a plane, metres: coarse, but
-/// patches follow the spacing, so that the plane still has no gaps.
+/// points to stop an object, as patches follow the spacing. With 1 cm a room of 300,000 points takes 1.4 times as long (`speed
+/// growth`); with 2 cm, of a cloud without normals 13 instead of 5 % of the contacts get a wrong one (`cargo test -p host-tests
+/// --test normals`).
+const PLANE_CUBE: f32 = 0.0125;
+/// The same, far from all that is not on a plane.
 const FAR_CUBE: f32 = 0.05;
 /// Keep the cubes of planes apart from others.
 const PLANE_TAG: u32 = 1 << 31;

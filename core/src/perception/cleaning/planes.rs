@@ -8,13 +8,16 @@ use crate::random::Random;
 
 // Physics: what a large plane is.
 
-/// Edge of the smallest square that makes a plane large, in cells of which the outer ones may be cut. With [`CELL`] it is
-/// between 12.5 and 17.5 cm, more than what objects are hung over.
-const SQUARE: usize = 7;
-/// Edge of a cell of the grid on a plane, metres. The points of a surface are closer.
-const CELL: f32 = 0.025;
+/// The grid on which a large plane is looked for. The smallest square that makes a plane large is between 12.5 and 17.5 cm, more
+/// than what objects are hung over.
+const FINE: Cells = Cells { edge: 0.025, square: 7 };
+/// The grid for planes whose points are too far apart for that: squares between 10 and 20 cm.
+const COARSE: Cells = Cells { edge: 0.05, square: 4 };
 /// Least share of the cells of the square that have points.
 const MIN_FILL: f32 = 0.9;
+/// Most points of a cell whose neighbours may be empty by chance: of cells with two points on average a seventh is empty, and
+/// most of the others have no more than this. On a rack of bars they have many.
+const FEW: u8 = 3;
 
 // Tolerances.
 
@@ -29,7 +32,7 @@ const PROBES: usize = 2048;
 const MAX_PLANES: usize = 8;
 /// A plane that is looked at has more than one in so many of the probes.
 const MIN_SHARE: usize = 25;
-/// Cells of the grid along an edge: with [`CELL`], it spans 3.2 m.
+/// Cells of a grid along an edge: it spans 3.2 or 6.4 m.
 const CELLS: usize = 128;
 
 /// Bytes of working memory.
@@ -37,10 +40,20 @@ pub(super) const fn scratch_bytes() -> usize {
     array_bytes::<Point>(PROBES).saturating_add(array_bytes::<u8>(CELLS * CELLS))
 }
 
+/// The cells of a grid.
+#[derive(Clone, Copy)]
+struct Cells {
+    /// Edge of a cell, metres.
+    edge: f32,
+    /// Edge of the smallest square that makes a plane large, in cells of which the outer ones may be cut.
+    square: usize,
+}
+
 /// A plane with a grid on it.
 struct Grid {
     plane: Plane,
     axes: [Vector; 2],
+    cells: Cells,
 }
 
 /// Marks with 1 the points on large planes.
@@ -61,9 +74,12 @@ pub(super) fn mark(
         meter.check_cancelled()?;
         let Some(plane) = Plane::search(probes, TOLERANCE, count / MIN_SHARE, &mut random) else { break };
         meter.check_cancelled()?;
-        let grid = Grid::on(plane);
-        grid.fill(points, cells, meter)?;
-        if mark_squares(cells) {
+        let mut grid = Grid::on(plane, FINE);
+        if grid.fill(points, cells, meter)? {
+            grid = Grid::on(plane, COARSE);
+            grid.fill(points, cells, meter)?;
+        }
+        if mark_squares(cells, grid.cells.square) {
             for (step, (flag, point)) in is_on_plane.iter_mut().zip(points).enumerate() {
                 meter.check_at(step)?;
                 *flag |= u8::from(grid.cell(point).is_some_and(|cell| is_in_or_beside_square(cells, cell)));
@@ -73,7 +89,7 @@ pub(super) fn mark(
         let mut left = 0;
         for index in 0..probes.len() {
             let probe = probes[index];
-            if !grid.is_near(&probe) {
+            if plane.distance(&probe) >= TOLERANCE {
                 probes[left] = probe;
                 left += 1;
             }
@@ -84,36 +100,34 @@ pub(super) fn mark(
 }
 
 impl Grid {
-    fn on(plane: Plane) -> Self {
+    fn on(plane: Plane, cells: Cells) -> Self {
         let ahead = any_perpendicular(plane.normal);
-        Self { plane, axes: [ahead, plane.normal.cross(&ahead)] }
-    }
-
-    fn is_near(&self, point: &Point) -> bool {
-        self.plane.distance(point) < TOLERANCE
+        Self { plane, axes: [ahead, plane.normal.cross(&ahead)], cells }
     }
 
     /// The cell of a point on the plane.
     fn cell(&self, point: &Point) -> Option<usize> {
-        if !self.is_near(point) {
+        if self.plane.distance(point) >= TOLERANCE {
             return None;
         }
-        let [x, y] = self.axes.map(|axis| libm::floorf((point - self.plane.origin).dot(&axis) / CELL));
+        let [x, y] =
+            self.axes.map(|axis| libm::floorf((point - self.plane.origin).dot(&axis) / self.cells.edge));
         let half = (CELLS / 2) as f32;
         let is_inside = |x: f32| x >= -half && x < half;
         (is_inside(x) && is_inside(y)).then(|| (y + half) as usize * CELLS + (x + half) as usize)
     }
 
-    /// Marks the cells that have points.
-    fn fill(&self, points: &[Point], cells: &mut [u8], meter: &Meter) -> Result<(), Stop> {
+    /// Marks the cells that have points, and returns whether most have so few that the others may be empty by chance.
+    fn fill(&self, points: &[Point], cells: &mut [u8], meter: &Meter) -> Result<bool, Stop> {
         cells.fill(0);
         for (step, point) in points.iter().enumerate() {
             meter.check_at(step)?;
             if let Some(cell) = self.cell(point) {
-                cells[cell] = OCCUPIED;
+                cells[cell] = cells[cell].saturating_add(POINT) & !LARGE | OCCUPIED;
             }
         }
-        Ok(())
+        let occupied = || cells.iter().filter(|cell| **cell > 0);
+        Ok(2 * occupied().filter(|cell| **cell / POINT <= FEW).count() > occupied().count())
     }
 }
 
@@ -121,6 +135,8 @@ impl Grid {
 const OCCUPIED: u8 = 1;
 /// Bit of a cell with points in a filled square.
 const LARGE: u8 = 2;
+/// A point of a cell. 63 are counted at most.
+const POINT: u8 = 4;
 
 /// Whether a cell or one of those around it is in a filled square: at the rim of a plane a cell may be cut narrow, and
 /// those beside it empty.
@@ -130,21 +146,21 @@ fn is_in_or_beside_square(cells: &[u8], cell: usize) -> bool {
     (0..9).any(|k| is_large(k / 3 * CELLS + k % 3))
 }
 
-/// Marks the cells with points in squares that are filled. Returns whether there is one.
-fn mark_squares(cells: &mut [u8]) -> bool {
+/// Marks the cells with points in squares with edges of `square` cells that are filled. Returns whether there is one.
+fn mark_squares(cells: &mut [u8], square: usize) -> bool {
     let is_occupied = |cell: u8| usize::from(cell & OCCUPIED);
-    let (mut is_any_filled, least) = (false, MIN_FILL * (SQUARE * SQUARE) as f32);
+    let (mut is_any_filled, least) = (false, MIN_FILL * (square * square) as f32);
     // Cells with points in each column of the squares in these rows.
     let mut columns = [0; CELLS];
     for y in 0..CELLS {
         for (x, column) in columns.iter_mut().enumerate() {
             *column += is_occupied(cells[y * CELLS + x]);
-            *column -= if y < SQUARE { 0 } else { is_occupied(cells[(y - SQUARE) * CELLS + x]) };
+            *column -= if y < square { 0 } else { is_occupied(cells[(y - square) * CELLS + x]) };
         }
-        for (x, square) in columns.windows(SQUARE).enumerate() {
-            if y + 1 >= SQUARE && square.iter().sum::<usize>() as f32 >= least {
-                for row in cells.chunks_mut(CELLS).take(y + 1).skip(y + 1 - SQUARE) {
-                    row[x..x + SQUARE].iter_mut().for_each(|cell| *cell |= LARGE);
+        for (x, counts) in columns.windows(square).enumerate() {
+            if y + 1 >= square && counts.iter().sum::<usize>() as f32 >= least {
+                for row in cells.chunks_mut(CELLS).take(y + 1).skip(y + 1 - square) {
+                    row[x..x + square].iter_mut().for_each(|cell| *cell |= LARGE);
                 }
                 is_any_filled = true;
             }
@@ -160,22 +176,22 @@ mod tests {
     #[test]
     fn squares_are_marked_as_one_by_one() {
         let mut random = Random::new(4);
-        for density in [0.2, 0.8, 0.93, 1.0] {
+        for (density, square) in [(0.2, 7), (0.8, 7), (0.93, 7), (1.0, 7), (0.3, 4), (0.93, 4)] {
             // A field of half the grid's size that reaches its border.
             let mut cells = std::vec![0; CELLS * CELLS];
             for (place, cell) in cells.iter_mut().enumerate().take(CELLS * CELLS / 2) {
                 *cell = u8::from(random.next_f32() < density && place % CELLS > CELLS / 3);
             }
             let mut expected = cells.clone();
-            for (x, y) in (0..=CELLS - SQUARE).flat_map(|y| (0..=CELLS - SQUARE).map(move |x| (x, y))) {
-                let square = || (0..SQUARE * SQUARE).map(|k| (y + k / SQUARE) * CELLS + x + k % SQUARE);
-                let occupied = square().filter(|&cell| cells[cell] & OCCUPIED > 0).count();
-                if occupied as f32 >= MIN_FILL * (SQUARE * SQUARE) as f32 {
-                    square().for_each(|cell| expected[cell] |= LARGE);
+            for (x, y) in (0..=CELLS - square).flat_map(|y| (0..=CELLS - square).map(move |x| (x, y))) {
+                let all = || (0..square * square).map(|k| (y + k / square) * CELLS + x + k % square);
+                let occupied = all().filter(|&cell| cells[cell] & OCCUPIED > 0).count();
+                if occupied as f32 >= MIN_FILL * (square * square) as f32 {
+                    all().for_each(|cell| expected[cell] |= LARGE);
                 }
             }
             let is_any = expected.iter().any(|cell| cell & LARGE > 0);
-            assert_eq!((mark_squares(&mut cells), &cells), (is_any, &expected), "{density}");
+            assert_eq!((mark_squares(&mut cells, square), &cells), (is_any, &expected), "{density}");
             assert!(is_any || density < 1.0);
             assert!(!is_any || density > 0.5);
         }
