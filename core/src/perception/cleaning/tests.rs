@@ -164,8 +164,8 @@ fn a_wall_is_thinned_the_more_the_farther_it_is_from_what_hangs() {
     points.extend(square(60_000, 2.0, Point::new(0.013, 0.013, 0.013), 0.001, &mut random));
     let (kept, on_planes, counts) = cleaned(&points, &unknown(&points));
     assert!(kept.iter().filter(|index| **index < surface).count() > 2900 && counts.strays == 0);
-    // 2 m by 2 m in squares of 5 cm are 1600, and 0.8 m by 0.6 m in squares of 12.5 mm are 3100.
-    assert!((3000..6000).contains(&on_planes.len()), "{}", on_planes.len());
+    // 2 m by 2 m in squares of 5 cm are 1600, and 0.8 square metres near the bar in squares of 12.5 mm are 5100.
+    assert!((3000..7500).contains(&on_planes.len()), "{}", on_planes.len());
     // No gap: every square of 10 cm has points, nearer ones more.
     let in_square = |x: f32, y: f32| {
         let is_in = |index: &&u32| {
