@@ -45,6 +45,17 @@ fn most_for_supporter(params: &Params, points: usize) -> [usize; 2] {
     }
 }
 
+/// The most queries of a prediction.
+fn most_for_prediction(params: &Params, points: usize) -> usize {
+    let steps = (4.0 * params.settle_time + 6.0) / params.time_step;
+    match params.candidates {
+        Candidates::Sites => 128 * 256 * 2 * 3 * points,
+        Candidates::Contacts => {
+            100_000 * 5 * (16 + 3 * points) + params.settle_attempts * steps.ceil() as usize * 3 * points
+        }
+    }
+}
+
 fn assert_at_most(name: &str, work: Work, [rays, queries]: [usize; 2]) {
     let is_within = work.rays <= rays as u64 && work.distance_queries <= queries as u64;
     assert!(is_within, "{name}: {work:?}, more than {rays} rays or {queries} queries");
@@ -101,6 +112,7 @@ fn check_pair(name: &str, mesh: &Triangles, points: &[[f32; 3]]) {
         let predicted =
             predict(&object, &supporter, &Request::ANY, &params, &mut poses, &mut memory, &unlimited)
                 .unwrap();
+        assert_at_most(name, predicted.work, [usize::MAX, most_for_prediction(&params, points.len())]);
         let Some(goal) = predicted.poses.first().copied().filter(|goal| goal.rest.is_some()) else {
             continue;
         };
@@ -111,6 +123,7 @@ fn check_pair(name: &str, mesh: &Triangles, points: &[[f32; 3]]) {
         let mut waypoints = vec![Waypoint::default(); 2_000];
         check(&format!("plan, {name}"), |monitor| {
             let plan = plan(&task, &goal, &mut waypoints, &mut |_| true, &mut memory, monitor).unwrap();
+            assert_at_most(name, plan.work, [0, plan.counts.poses * 3 * points.len()]);
             Some((plan.work, plan.stopped()))
         });
     }
