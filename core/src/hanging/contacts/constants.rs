@@ -110,5 +110,5 @@ pub(super) const ATTEMPT_DIVISOR: usize = 4;
 /// Distance queries after which the search ends once a pose is reliable. It bounds the slowest searches, in which much is released
 /// and nothing is firm: 99 % of 550 pairs take about five times the median with it, and eight times without
 /// (`speed --pairs 330 --seed 91 --all --profile default`). Where no pose is reliable, the search goes on: of 98 pairs of seed 31
-/// scanned with 24+1 views, ending it for any pose that hangs lost three (`tables --scan 24+1 --pairs 90 --seed 31`).
+/// scanned with 24+1 views, ending it for any pose that hangs lost two (`tables --scan 24+1 --pairs 90 --seed 31`).
 pub(super) const ENOUGH_QUERIES: u64 = 1_150_000;

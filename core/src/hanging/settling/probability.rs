@@ -40,8 +40,9 @@ const MAX_ESCAPE_RATIO: f32 = 2.0;
 /// Probability from which a pose is firm: [`Params::firm_enough`](crate::Params::firm_enough) such releases end the
 /// search.
 const FIRM: f32 = 0.975;
-/// Probability from which a pose is reliable: a long search ends with such a pose, and goes on without. With 0.95 the slowest of a
-/// hundred pairs takes seven times the median, with 0.8 poses are missed on scans (commands at `ENOUGH_QUERIES`).
+/// Probability from which a pose is reliable: a long search ends with such a pose, and goes on without. With 0.95 one more of 98
+/// scanned pairs hangs, and the slowest of a hundred pairs takes seven times the median; 0.8 and 0.9 do not differ on scans
+/// (commands at `ENOUGH_QUERIES`).
 const RELIABLE: f32 = 0.9;
 
 // Doubt: minus the logarithm of the share of poses that hang, of those that would hang if what no camera has seen were as

@@ -10,9 +10,9 @@ use crate::random::Random;
 
 /// The grid on which a large plane is looked for. The smallest square that makes a plane large is between 12.5 and 17.5 cm, more
 /// than what objects are hung over.
-const FINE: Cells = Cells { edge: 0.025, square: 7 };
+const FINE: Resolution = Resolution { cell: 0.025, square: 7 };
 /// The grid for planes whose points are too far apart for that: squares between 10 and 20 cm.
-const COARSE: Cells = Cells { edge: 0.05, square: 4 };
+const COARSE: Resolution = Resolution { cell: 0.05, square: 4 };
 /// Least share of the cells of the square that have points.
 const MIN_FILL: f32 = 0.9;
 /// Most points of a cell whose neighbours may be empty by chance: of cells with two points on average a seventh is empty, and
@@ -40,11 +40,11 @@ pub(super) const fn scratch_bytes() -> usize {
     array_bytes::<Point>(PROBES).saturating_add(array_bytes::<u8>(CELLS * CELLS))
 }
 
-/// The cells of a grid.
+/// How fine a grid is.
 #[derive(Clone, Copy)]
-struct Cells {
+struct Resolution {
     /// Edge of a cell, metres.
-    edge: f32,
+    cell: f32,
     /// Edge of the smallest square that makes a plane large, in cells of which the outer ones may be cut.
     square: usize,
 }
@@ -53,7 +53,7 @@ struct Cells {
 struct Grid {
     plane: Plane,
     axes: [Vector; 2],
-    cells: Cells,
+    resolution: Resolution,
 }
 
 /// Marks with 1 the points on large planes.
@@ -79,7 +79,7 @@ pub(super) fn mark(
             grid = Grid::on(plane, COARSE);
             grid.fill(points, cells, meter)?;
         }
-        if mark_squares(cells, grid.cells.square) {
+        if mark_squares(cells, grid.resolution.square) {
             for (step, (flag, point)) in is_on_plane.iter_mut().zip(points).enumerate() {
                 meter.check_at(step)?;
                 *flag |= u8::from(grid.cell(point).is_some_and(|cell| is_in_or_beside_square(cells, cell)));
@@ -100,9 +100,9 @@ pub(super) fn mark(
 }
 
 impl Grid {
-    fn on(plane: Plane, cells: Cells) -> Self {
+    fn on(plane: Plane, resolution: Resolution) -> Self {
         let ahead = any_perpendicular(plane.normal);
-        Self { plane, axes: [ahead, plane.normal.cross(&ahead)], cells }
+        Self { plane, axes: [ahead, plane.normal.cross(&ahead)], resolution }
     }
 
     /// The cell of a point on the plane.
@@ -111,7 +111,7 @@ impl Grid {
             return None;
         }
         let [x, y] =
-            self.axes.map(|axis| libm::floorf((point - self.plane.origin).dot(&axis) / self.cells.edge));
+            self.axes.map(|axis| libm::floorf((point - self.plane.origin).dot(&axis) / self.resolution.cell));
         let half = (CELLS / 2) as f32;
         let is_inside = |x: f32| x >= -half && x < half;
         (is_inside(x) && is_inside(y)).then(|| (y + half) as usize * CELLS + (x + half) as usize)
