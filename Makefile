@@ -80,7 +80,7 @@ fuzz:
 trust: embedded
 	@scripts/setup.sh trust
 	embedded/same_bits.sh
-	cargo run --release -p host-tests --bin cancel -- --limit 5
+	cargo run --release -p host-tests --bin cancel -- --limit 1
 	cargo run --release -p host-tests --bin worst -- --limit 500
 	scripts/sanitize.sh
 	scripts/supply.sh

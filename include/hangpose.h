@@ -1114,7 +1114,7 @@ typedef struct hangpose_points_settings {
 #define HANGPOSE_REJECTED 1
 
 // hangpose_monitor_cancel was called. hangpose_predict returns the best poses found so far; a cancelled analysis
-// creates no model, and a cancelled change of a volume leaves it as it was.
+// creates no model, and a cancelled change of a volume may have changed a part of it.
 #define HANGPOSE_CANCELLED 2
 
 // The work limit of the monitor was reached, in this call or in the analysis of one of its models. The results
@@ -1718,8 +1718,9 @@ hangpose_status hangpose_volume_create(void *memory,
 // of it. `image` and its arrays are needed during the call only. `monitor` may be null; a pixel counts as one ray of its
 // work limit.
 //
-// Returns HANGPOSE_OK; or HANGPOSE_CANCELLED, HANGPOSE_WORK_LIMIT or an error, and the volume is as it was before. After
-// HANGPOSE_ERROR_CAPACITY, create a volume of more blocks and fuse all images again.
+// Returns HANGPOSE_OK; HANGPOSE_WORK_LIMIT or an error, and the volume is as it was before; or HANGPOSE_CANCELLED, and a part
+// of the image may be fused, as if labels hid the rest. After HANGPOSE_ERROR_CAPACITY, create a volume of more blocks and fuse
+// all images again.
 hangpose_status hangpose_volume_integrate(struct hangpose_volume *volume,
                                           const struct hangpose_depth_image *image,
                                           struct hangpose_monitor *monitor,
@@ -1731,7 +1732,8 @@ hangpose_status hangpose_volume_integrate(struct hangpose_volume *volume,
 // object: to a wall, or with settings.missing_is_free. `memory` is working memory of at least hangpose_complete_bytes,
 // needed during the call only. `monitor` may be null.
 //
-// Returns HANGPOSE_OK; or HANGPOSE_CANCELLED or an error, and the volume is as it was before.
+// Returns HANGPOSE_OK; an error, and the volume is as it was before; or HANGPOSE_CANCELLED, and a part of the guesses may be
+// written, which another call completes.
 hangpose_status hangpose_volume_complete(struct hangpose_volume *volume,
                                          void *memory,
                                          size_t memory_size,

@@ -12,7 +12,7 @@ pub const HANGPOSE_OK: hangpose_status = 0;
 /// none.
 pub const HANGPOSE_REJECTED: hangpose_status = 1;
 /// hangpose_monitor_cancel was called. hangpose_predict returns the best poses found so far; a cancelled analysis
-/// creates no model, and a cancelled change of a volume leaves it as it was.
+/// creates no model, and a cancelled change of a volume may have changed a part of it.
 pub const HANGPOSE_CANCELLED: hangpose_status = 2;
 /// The work limit of the monitor was reached, in this call or in the analysis of one of its models. The results
 /// found so far are returned. hangpose_volume_integrate has none, and leaves the volume as it was.

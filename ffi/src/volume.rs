@@ -115,8 +115,9 @@ pub unsafe extern "C" fn hangpose_volume_create(
 /// of it. `image` and its arrays are needed during the call only. `monitor` may be null; a pixel counts as one ray of its
 /// work limit.
 ///
-/// Returns HANGPOSE_OK; or HANGPOSE_CANCELLED, HANGPOSE_WORK_LIMIT or an error, and the volume is as it was before. After
-/// HANGPOSE_ERROR_CAPACITY, create a volume of more blocks and fuse all images again.
+/// Returns HANGPOSE_OK; HANGPOSE_WORK_LIMIT or an error, and the volume is as it was before; or HANGPOSE_CANCELLED, and a part
+/// of the image may be fused, as if labels hid the rest. After HANGPOSE_ERROR_CAPACITY, create a volume of more blocks and fuse
+/// all images again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_volume_integrate(
     volume: *mut hangpose_volume,
@@ -156,7 +157,8 @@ pub unsafe extern "C" fn hangpose_volume_integrate(
 /// object: to a wall, or with settings.missing_is_free. `memory` is working memory of at least hangpose_complete_bytes,
 /// needed during the call only. `monitor` may be null.
 ///
-/// Returns HANGPOSE_OK; or HANGPOSE_CANCELLED or an error, and the volume is as it was before.
+/// Returns HANGPOSE_OK; an error, and the volume is as it was before; or HANGPOSE_CANCELLED, and a part of the guesses may be
+/// written, which another call completes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hangpose_volume_complete(
     volume: *mut hangpose_volume,

@@ -126,7 +126,7 @@ impl Probe {
         });
     }
 
-    /// Each step from depth images of the object to its mesh. Fusing an image is left out: once it changes the volume it ends first.
+    /// Each step from depth images of the object to its mesh.
     fn scan(&mut self, object: &Solid) -> Result<()> {
         let spec: Spec = "3+1".parse().map_err(anyhow::Error::msg)?;
         let shots = spec.shoot_object(object, &[], &mut Random::named("cancel", 1));
@@ -143,6 +143,10 @@ impl Probe {
         for image in &images {
             volume.integrate(image, None, &monitor)?;
         }
+        let image = images.first().context("a scan has images")?;
+        self.measure("scan, image", |monitor| {
+            let _ = volume.integrate(image, None, monitor);
+        });
         // Completing what is complete takes as long.
         let mut memory = vec![0; Completion::bytes(volume.blocks())];
         self.measure("scan, completion", |monitor| {

@@ -69,7 +69,7 @@ impl MassProperties {
             solid.add(&corners, tetrahedron(&corners), 4.0, 20.0);
         })?;
         let e = aabb.extents();
-        let is_closed = holes.is_none();
+        let is_closed = holes.count == 0;
         let encloses = (is_closed || fans < MAX_HOLES * shell.whole)
             && solid.whole.abs() as f32 > LEAST_VOLUME * e.x * e.y * e.z;
         let centroid = (middle + solid.mean()).cast::<f32>();
@@ -138,12 +138,14 @@ struct Rim {
 
 /// The edges of a mesh that are not matched by ones in the opposite direction, and the rims that they form.
 struct Holes<'s> {
-    /// Directed edges between welded vertices, those of one edge after each other.
+    /// Number of such edges.
+    count: usize,
+    /// All directed edges between welded vertices, those of one edge after each other.
     runs: &'s [[u32; 2]],
     /// Vertices connected by unmatched edges.
     connected: DisjointSets<'s>,
     /// By the name of the connected vertices.
-    rims: &'s [Rim],
+    rims: &'s mut [Rim],
     /// The point that the middles of edges are measured from.
     centre: Point,
 }
@@ -153,7 +155,7 @@ impl<'s> Holes<'s> {
         let vertices = mesh.vertices();
         let order = scratch.slice::<u32>(vertices.len())?;
         let welded = scratch.slice::<u32>(vertices.len())?;
-        let edges = scratch.slice::<[u32; 2]>(mesh.triangles().len() * 3)?;
+        let edges = scratch.unset::<[u32; 2]>(mesh.triangles().len() * 3)?;
         let rims = scratch.slice::<Rim>(vertices.len())?;
         for (slot, index) in order.iter_mut().zip(0..) {
             *slot = index;
@@ -175,25 +177,28 @@ impl<'s> Holes<'s> {
             welded[index as usize] = representative;
         }
         sort_edges(mesh, welded, edges, scratch.scratch(), meter)?;
-        let mut connected = DisjointSets::new(order);
-        for (step, [a, b]) in unmatched(edges).enumerate() {
-            meter.check_at(step)?;
+        let (mut connected, mut count) = (DisjointSets::new(order), 0);
+        for_each_unmatched(edges, meter, |[a, b]| {
             connected.join(a, b);
+            count += 1;
+        })?;
+        let mut holes = Self { count, runs: edges, connected, rims, centre };
+        if count > 0 {
+            holes.measure_rims(mesh, meter)?;
         }
-        for (step, [a, b]) in unmatched(edges).enumerate() {
-            meter.check_at(step)?;
+        Ok(holes)
+    }
+
+    fn measure_rims(&mut self, mesh: &Mesh, meter: &Meter) -> Result<(), Stop> {
+        let Self { runs, connected, rims, centre, .. } = self;
+        for_each_unmatched(runs, meter, |[a, b]| {
             let rim = &mut rims[connected.find(a) as usize];
             let [start, end] = [a, b].map(|vertex| mesh.vertices()[vertex as usize]);
             let length = (end - start).norm();
-            let middle = (start - centre + (end - start) * 0.5) * length;
+            let middle = (start - *centre + (end - start) * 0.5) * length;
             rim.length += length;
             rim.sum = [0, 1, 2].map(|i| rim.sum[i] + middle[i]);
-        }
-        Ok(Self { runs: edges, connected, rims, centre })
-    }
-
-    fn is_none(&self) -> bool {
-        unmatched(self.runs).next().is_none()
+        })
     }
 
     /// Calls `visit` with the triangles of the fans that close the holes, wound as the mesh is.
@@ -203,14 +208,16 @@ impl<'s> Holes<'s> {
         meter: &Meter,
         mut visit: impl FnMut([Point; 3]),
     ) -> Result<(), Stop> {
-        for (step, [a, b]) in unmatched(self.runs).enumerate() {
-            meter.check_at(step)?;
-            let rim = self.rims[self.connected.find(a) as usize];
-            let middle = self.centre + Vector::from(rim.sum) / rim.length.max(f32::MIN_POSITIVE);
+        if self.count == 0 {
+            return Ok(());
+        }
+        let Self { runs, connected, rims, centre, .. } = self;
+        for_each_unmatched(runs, meter, |[a, b]| {
+            let rim = rims[connected.find(a) as usize];
+            let middle = *centre + Vector::from(rim.sum) / rim.length.max(f32::MIN_POSITIVE);
             let [start, end] = [a, b].map(|vertex| mesh.vertices()[vertex as usize]);
             visit([end, start, middle]);
-        }
-        Ok(())
+        })
     }
 }
 
@@ -259,15 +266,17 @@ fn undirected(&[a, b]: &[u32; 2]) -> (u32, u32) {
     (a.min(b), a.max(b))
 }
 
-/// The edges that occur more often in one direction than in the other, once for each excess.
-fn unmatched(runs: &[[u32; 2]]) -> impl Iterator<Item = [u32; 2]> {
-    runs.chunk_by(|a, b| undirected(a) == undirected(b)).flat_map(|run| {
+/// Calls `visit` with the edges that occur more often in one direction than in the other, once for each excess.
+fn for_each_unmatched(runs: &[[u32; 2]], meter: &Meter, mut visit: impl FnMut([u32; 2])) -> Result<(), Stop> {
+    for (step, run) in runs.chunk_by(|a, b| undirected(a) == undirected(b)).enumerate() {
+        meter.check_at(step)?;
         let (a, b) = undirected(&run[0]);
         let forward = run.iter().filter(|[a, b]| a < b).count();
         let backward = run.iter().filter(|[a, b]| a > b).count();
         let edge = if forward > backward { [a, b] } else { [b, a] };
-        core::iter::repeat_n(edge, forward.abs_diff(backward))
-    })
+        (0..forward.abs_diff(backward)).for_each(|_| visit(edge));
+    }
+    Ok(())
 }
 
 #[cfg(test)]

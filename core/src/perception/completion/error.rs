@@ -3,7 +3,7 @@
 use crate::Stop;
 use crate::memory::OutOfMemory;
 
-/// Why a volume cannot be completed. It is then as it was before the call.
+/// Why a volume cannot be completed. It is then as it was before the call, unless that was cancelled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CompletionError {
     /// The volume is sparse.

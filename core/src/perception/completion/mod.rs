@@ -76,7 +76,7 @@ impl Volume<'_> {
     ///
     /// [`Isosurface::write_seen`](super::isosurface::Isosurface::write_seen) tells what was seen from what was guessed, and
     /// [`space`](Self::space) goes on to say that a guess is unknown. An image that is fused later replaces guesses where
-    /// it sees something.
+    /// it sees something. A call that is cancelled may have written a part of the guesses; another call completes them.
     pub fn complete(
         &mut self,
         settings: &CompletionSettings,
@@ -104,7 +104,7 @@ impl Volume<'_> {
         work.unite_balls(&meter)?;
         meter.progress(0.9);
         work.fill_cavities(&meter)?;
-        let completion = work.write(self);
+        let completion = work.write(self, &meter)?;
         meter.progress(1.0);
         Ok(completion)
     }
@@ -272,11 +272,12 @@ impl<'m> Work<'m> {
     }
 
     /// Writes the guesses to the volume.
-    fn write(&self, volume: &mut Volume) -> Completion {
+    fn write(&self, volume: &mut Volume, meter: &Meter) -> Result<Completion, Stop> {
         let grid = self.grid;
         let voxels_a_truncation = volume.settings().truncation / volume.settings().voxel;
         let mut completion = Completion::default();
         for index in 0..self.states.len() {
+            meter.check_at(index)?;
             let place = grid.place(volume, index);
             let distance = self.values[index];
             let guess = Voxel::guess(distance / voxels_a_truncation);
@@ -297,6 +298,6 @@ impl<'m> Work<'m> {
                 State::Outside => {}
             }
         }
-        completion
+        Ok(completion)
     }
 }

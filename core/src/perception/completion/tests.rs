@@ -192,6 +192,29 @@ fn a_guess_stays_unknown_and_later_images_replace_it() {
     });
 }
 
+/// A call that was cancelled while it wrote left the guesses of the first voxels.
+#[test]
+fn another_call_completes_a_part_of_the_guesses() {
+    for (shape, eye) in [(ball as Distance, [0.4, 0.0, 0.0]), (bar, [0.3, 0.27, 0.0])] {
+        let views = seen_from(eye, shape);
+        let at_once = with_views(settings(), &views, |volume| {
+            complete(volume);
+            volume.voxels().to_vec()
+        });
+        with_views(settings(), &views, |volume| {
+            let grid = grid::Grid::of(volume);
+            for index in 0..grid.count() / 2 {
+                let place = grid.place(volume, index);
+                volume.voxels_mut()[place] = at_once[place];
+            }
+            complete(volume);
+            surface(volume).assert_closed();
+            let differs = |(a, b): (&Voxel, &Voxel)| (a.distance < 0) != (b.distance < 0);
+            assert!(!volume.voxels().iter().zip(&at_once).any(differs));
+        });
+    }
+}
+
 #[test]
 fn names_what_is_broken_and_leaves_the_volume_alone() {
     let views = seen_from([0.4, 0.0, 0.0], ball);

@@ -4,7 +4,8 @@ use super::VolumeSettingsError;
 use crate::Stop;
 use crate::memory::OutOfMemory;
 
-/// Why a volume cannot be built or an image cannot be fused. The volume is then as it was before the call.
+/// Why a volume cannot be built or an image cannot be fused. The volume is then as it was before the call, unless that was
+/// cancelled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum VolumeError {
     /// The settings are not usable.

@@ -120,8 +120,8 @@ impl<'m> Volume<'m> {
     /// Fuses an image. Pixels without a depth say nothing, unless [`VolumeSettings::missing_is_free`]. With a `mask`, surfaces are taken only from the pixels of its
     /// label; the others still show where space is free.
     ///
-    /// A call that returns an error leaves the volume as it was. A pixel with a surface counts as one ray of the work
-    /// limit.
+    /// A call that returns an error leaves the volume as it was, and so does one that meets the work limit, of which a pixel
+    /// with a surface counts as one ray. A cancelled call may have fused a part of the image, as if a mask hid the rest.
     pub fn integrate(
         &mut self,
         image: &DepthImage,
@@ -148,6 +148,7 @@ impl<'m> Volume<'m> {
         let mut voxels = 0;
         for (block, chunk) in self.voxels.chunks_exact_mut(BLOCK_VOXELS).enumerate().take(self.blocks.count())
         {
+            meter.check_cancelled()?;
             voxels += fusion.update(self.blocks.key(block), chunk);
         }
         meter.progress(1.0);
