@@ -116,8 +116,8 @@ pub struct Params {
     /// Maximum number of nodes of the object's signed distance field. A node takes two bytes, and the index
     /// of the field as much again.
     pub voxels: usize,
-    /// Maximum number of released poses while none is stable. Once one is stable, the maximum is a quarter of
-    /// it.
+    /// Maximum number of released poses while none is stable, and of candidates that touch the supporter, which are not released.
+    /// Once a pose is stable, the maximum number of released poses is a quarter of it.
     pub settle_attempts: usize,
     /// Number of firm releases after which the search ends. A release is firm if the probability of its rest
     /// pose is at least 97.5 %, or if it hardly differs from such a pose. The search also ends after four times as

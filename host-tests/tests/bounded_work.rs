@@ -47,7 +47,8 @@ fn most_for_supporter(params: &Params, points: usize) -> [usize; 2] {
 
 /// The most queries of a prediction.
 fn most_for_prediction(params: &Params, points: usize) -> usize {
-    let steps = (4.0 * params.settle_time + 6.0) / params.time_step;
+    // Steps, and tests of clearance: as many candidates are refused as released, and a release has up to three release poses.
+    let steps = (4.0 * params.settle_time + 6.0) / params.time_step + 5.0 * 9.0;
     match params.candidates {
         Candidates::Sites => 128 * 256 * 2 * 3 * points,
         Candidates::Contacts => {

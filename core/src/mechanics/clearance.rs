@@ -1,9 +1,9 @@
 //! Tests whether an object is clear of the supporter.
 
-use super::constants::{FIELD_BAND_RATIO, FIELD_ERROR, PATCH_PENETRATION};
+use super::constants::{FIELD_BAND_RATIO, FIELD_ERROR, MAX_PUSHES_OFF, PATCH_PENETRATION, PUSH_OFF_EXCESS};
 use super::touch::nearest_on_patch;
 use super::{Body, Support};
-use crate::geometry::{Point, Pose, Vector};
+use crate::geometry::{Point, Pose, Vector, unit_or};
 use crate::monitor::{Meter, Stop};
 use core::cell::Cell;
 
@@ -41,6 +41,48 @@ pub(crate) fn is_off_surface(
     clearance: f32,
     meter: &mut Meter,
 ) -> Result<bool, Stop> {
+    Ok(first_on_surface(scene, pose, clearance, meter)?.is_none())
+}
+
+/// The pose itself if [`is_off_surface`] holds of it; otherwise the pose after shifts off the parts of the supporter that it is too
+/// close to, if those are as small as the field's errors. `None` if that does not help.
+pub(crate) fn push_off_surface(
+    scene: (&Body, &Support),
+    pose: &Pose,
+    clearance: f32,
+    meter: &mut Meter,
+) -> Result<Option<Pose>, Stop> {
+    let (field, surface) = (scene.0.field, scene.0.surface);
+    let most = clearance + field.voxel_size();
+    let mut pushed = *pose;
+    for _ in 0..=MAX_PUSHES_OFF {
+        let Some(hit) = first_on_surface(scene, &pushed, clearance, meter)? else {
+            return Ok(Some(pushed));
+        };
+        let at = pushed.inverse_transform_point(&hit);
+        meter.distance_queries(2)?;
+        let off = at - surface.closest_point(&at);
+        let distance = off.norm();
+        // Out of the object, which is towards its surface from a point within it.
+        let inside = if surface.is_inside(&at) { -1.0 } else { 1.0 };
+        let way = unit_or(off * inside, field.sample(&at).1);
+        let wanted = if distance < clearance { clearance } else { 0.5 * scene.1.reach };
+        let missing = (wanted - inside * distance).max(0.0) + PUSH_OFF_EXCESS;
+        pushed.translation.vector -= pushed.rotation * way * missing;
+        if (pushed.translation.vector - pose.translation.vector).norm() > most {
+            break;
+        }
+    }
+    Ok(None)
+}
+
+/// A point of the supporter that contradicts [`is_off_surface`].
+fn first_on_surface(
+    scene: (&Body, &Support),
+    pose: &Pose,
+    clearance: f32,
+    meter: &mut Meter,
+) -> Result<Option<Point>, Stop> {
     let (field, surface, thin) = (scene.0.field, scene.0.surface, 0.5 * scene.1.reach);
     let greatest = clearance.max(scene.1.reach);
     let ball_gap = |point: &Point, radius: f32| surface.is_within(point, radius + greatest).then_some(0.0);
@@ -55,7 +97,7 @@ pub(crate) fn is_off_surface(
         let length = segment.norm();
         length > 0.0 && surface.closest_hit(from, &(segment / length)).is_some_and(|hit| hit < length)
     };
-    Ok(first_hit(scene, pose, greatest, ball_gap, is_point_clear, crosses, meter)?.is_none())
+    first_hit(scene, pose, greatest, ball_gap, is_point_clear, crosses, meter)
 }
 
 /// Returns the first part of the supporter that is not clear of the object: a point for which

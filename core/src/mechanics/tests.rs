@@ -489,6 +489,34 @@ fn a_wire_is_fitted_to_the_line_of_its_points() {
 }
 
 #[test]
+fn a_pose_that_nearly_touches_is_pushed_off() {
+    let (monitor, radius) = (Monitor::new(), 0.005);
+    Scene::new(ring(), rod(Vector::x(), 0.3, radius)).try_out(|lab| {
+        let scene = (&lab.body, &lab.support);
+        for gap in [-0.0005, 0.0, 0.0004, 0.0006] {
+            // Turned about the rod, so that the way out is none of the axes.
+            let turn = turned(Vector::x(), 20.0);
+            let height = Vector::z() * (gap - hang(radius));
+            let pose = Pose::from_parts((turn * height).into(), turn * turned(Vector::y(), 90.0));
+            let pushed = push_off_surface(scene, &pose, 0.0005, &mut Meter::new(&monitor)).unwrap().unwrap();
+            let way = pushed.translation.vector - pose.translation.vector;
+            let missing = (0.0005 - gap).max(0.0);
+            // The nearest point of the rod is up to 0.6 mm beside the tube's middle, so that pushes lead along the rod as well.
+            assert!((way - turn * Vector::z() * missing).norm() < 0.0004, "{gap}: {way:?}");
+            assert!(is_off_surface(scene, &pushed, 0.0005, &mut Meter::new(&monitor)).unwrap());
+            assert!(missing > 0.0 || pushed == pose);
+        }
+    });
+    // The rod does not fit into the hole.
+    let narrow = test_shapes::torus(0.006, 0.002, 72, 24);
+    Scene::new(narrow, rod(Vector::x(), 0.3, radius)).try_out(|lab| {
+        let pose = Pose::from_parts(Translation3::identity(), turned(Vector::y(), 90.0));
+        let scene = (&lab.body, &lab.support);
+        assert_eq!(push_off_surface(scene, &pose, 0.0005, &mut Meter::new(&monitor)), Ok(None));
+    });
+}
+
+#[test]
 fn a_ring_slides_along_the_rod_beyond_the_friction_angle() {
     Scene::new(ring(), rod(Vector::x(), 0.3, 0.005)).try_out(|lab| {
         let rest = lab.rest(&on_rod(), FRICTION);

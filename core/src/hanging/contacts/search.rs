@@ -85,20 +85,23 @@ fn release(
 ) -> Result<(), Stop> {
     let (attempts, firm_enough) = (settling.params.settle_attempts, settling.params.firm_enough);
     let queries_before = meter.work.distance_queries;
-    for attempt in 0..attempts {
-        meter.progress(attempt as f32 / attempts as f32);
+    // Candidates that are found to touch the supporter are no releases, and cost less. As many of them end the search.
+    for tried in 0.. {
+        let released = settling.counts.released;
+        let spent = released.max(tried - released);
+        meter.progress(spent as f32 / attempts as f32);
+        let has_tried_enough = ATTEMPT_DIVISOR * released >= attempts;
+        if spent >= attempts || settling.counts.probable > 0 && has_tried_enough {
+            break;
+        }
         let Some(candidate) = candidates.next(meter)? else { break };
         let pose = HangingPose { pose: candidate.pose, ..HangingPose::default() };
         let stays = settling.release(&pose, poses, meter)?;
         candidates.discount(&candidate, if stays { REST_SHARE } else { 1.0 });
         let counts = &settling.counts;
         let has_enough = counts.firm_as_preferred >= firm_enough || settling.is_saturated();
-        let has_tried_enough = ATTEMPT_DIVISOR * (attempt + 1) >= attempts;
         let queries = meter.work.distance_queries - queries_before;
-        if has_enough
-            || counts.probable > 0 && has_tried_enough
-            || settling.has_reliable && queries > ENOUGH_QUERIES
-        {
+        if has_enough || settling.has_reliable && queries > ENOUGH_QUERIES {
             break;
         }
         // Caps alone are no reason to stop, but to look elsewhere.

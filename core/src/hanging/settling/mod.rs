@@ -15,8 +15,8 @@ use super::watch::Watch;
 use crate::best::Best;
 use crate::geometry::{Pose, Symmetry};
 use crate::mechanics::{
-    Body, Fate, Settings, Settled, Sleep, Support, Unseen, carrying_contacts, comes_free, is_off_surface,
-    kind_of, lever, margin, release_pose, settle, unseen,
+    Body, Fate, Settings, Settled, Sleep, Support, Unseen, carrying_contacts, comes_free, kind_of, lever,
+    margin, push_off_surface, release_pose, settle, unseen,
 };
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop};
@@ -194,11 +194,11 @@ impl<'a> Settling<'a> {
     ) -> Result<bool, Stop> {
         let scene = (self.body, self.support);
         // Details finer than the distance field's voxels show only in this exact test.
-        if !is_off_surface(scene, &start.pose, CLEARANCE, meter)? {
+        let Some(off_surface) = push_off_surface(scene, &start.pose, CLEARANCE, meter)? else {
             return Ok(false);
-        }
+        };
         self.counts.released += 1;
-        let settled = self.settle(&start.pose, meter)?;
+        let settled = self.settle(&off_surface, meter)?;
         match settled.fate {
             Fate::Rests => self.counts.at_rest += 1,
             Fate::RotatesOff => self.counts.rotated_off += 1,
@@ -206,7 +206,7 @@ impl<'a> Settling<'a> {
             Fate::Moves => self.counts.moving += 1,
         }
         if let Some(Watch(watch)) = self.request.watch {
-            watch(&start.pose, settled.fate);
+            watch(&off_surface, settled.fate);
         }
         if settled.fate != Fate::Rests {
             return Ok(false);
@@ -342,9 +342,13 @@ impl<'a> Settling<'a> {
                 break;
             }
             let (pose, gap) = release_pose(scene, &settled.pose, clearance, &up, self.sleeps, meter)?;
-            if gap < MIN_RELEASE_GAP || !is_off_surface(scene, &pose, MIN_RELEASE_GAP, meter)? {
+            if gap < MIN_RELEASE_GAP {
                 break;
             }
+            let Some(pushed) = push_off_surface(scene, &pose, MIN_RELEASE_GAP, meter)? else { break };
+            // Other parts of the supporter may be nearer by as much as the pose is shifted.
+            let shift = (pushed.translation.vector - pose.translation.vector).norm();
+            let (pose, gap) = (pushed, (gap - shift).max(MIN_RELEASE_GAP));
             settled = self.settle(&pose, meter)?;
             let centre = &self.body.centre;
             let sinking = up.dot(&(pose * centre - settled.pose * centre));
