@@ -66,6 +66,7 @@ pub(crate) fn push_off_surface(
         // Out of the object, which is towards its surface from a point within it.
         let inside = if surface.is_inside(&at) { -1.0 } else { 1.0 };
         let way = unit_or(off * inside, field.sample(&at).1);
+        // Beyond the clearance, it is a patch or a thin part that is too close.
         let wanted = if distance < clearance { clearance } else { 0.5 * scene.1.reach };
         let missing = (wanted - inside * distance).max(0.0) + PUSH_OFF_EXCESS;
         pushed.translation.vector -= pushed.rotation * way * missing;

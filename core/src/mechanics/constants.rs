@@ -211,6 +211,9 @@ pub(super) const PATCH_PENETRATION: f32 = 0.001;
 /// Distance by which a shift off the supporter exceeds what is missing, m, so that rounding does not ask for another one.
 pub(super) const PUSH_OFF_EXCESS: f32 = 0.0001;
 /// Shifts at most to bring a pose off the supporter, where the field said that it is clear.
+///
+/// Larger: more time for poses in holes that are too narrow, where shifts alternate between two sides. Smaller: poses that touch
+/// in several places are refused. Chosen by hand.
 pub(super) const MAX_PUSHES_OFF: usize = 8;
 
 // ---- Tolerances of the distance field: it is interpolated between voxels, and exact only near the mesh ----

@@ -85,7 +85,8 @@ fn release(
 ) -> Result<(), Stop> {
     let (attempts, firm_enough) = (settling.params.settle_attempts, settling.params.firm_enough);
     let queries_before = meter.work.distance_queries;
-    // Candidates that are found to touch the supporter are no releases, and cost less. As many of them end the search.
+    // A candidate that cannot be brought off the supporter is not released, which costs less. As many of these are allowed as
+    // releases.
     for tried in 0.. {
         let released = settling.counts.released;
         let spent = released.max(tried - released);
