@@ -102,7 +102,8 @@ fn release(
         let counts = &settling.counts;
         let has_enough = counts.firm_as_preferred >= firm_enough || settling.is_saturated();
         let queries = meter.work.distance_queries - queries_before;
-        if has_enough || settling.has_reliable && queries > ENOUGH_QUERIES {
+        let enough_queries = if settling.has_reliable { ENOUGH_QUERIES } else { 2 * ENOUGH_QUERIES };
+        if has_enough || settling.counts.probable > 0 && queries > enough_queries {
             break;
         }
         // Caps alone are no reason to stop, but to look elsewhere.
