@@ -10,7 +10,9 @@ import numpy as np
 from scipy.optimize import minimize
 
 # As in core/src/hanging/settling/probability.rs: for the object, the shadow and the supporter.
-DOUBT = np.array([0.4, 2.4, 0.6])
+DOUBT = np.array([0.5, 1.8, 0.8])
+# Escape ratio from which a pose is deep.
+DEEP = 1.0
 BINS = [0.0, 0.3, 0.5, 0.8, 0.9, 0.95, 1.0]
 
 
@@ -20,8 +22,10 @@ def main():
         for row in map(json.loads, file):
             for outcome in row["outcomes"]:
                 said = outcome["said"]
-                unseen.append(said["unseen"])
-                sure.append(said["probability"] * np.exp(DOUBT @ said["unseen"]))
+                object_, shadow, supporter = said["unseen"]
+                shallowness = 1 - min(said["escape_ratio"], DEEP) / DEEP
+                unseen.append([object_ * shallowness, shadow, supporter * shallowness])
+                sure.append(said["probability"] * np.exp(DOUBT @ unseen[-1]))
                 hangs.append(outcome["clear"] and outcome["holds"] and outcome["honest"])
                 scans.append(row["scan"])
                 # The poses of a pair are alike.

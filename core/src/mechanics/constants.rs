@@ -195,11 +195,6 @@ pub(super) const RIM_RATIO: f32 = 0.9;
 /// Larger: parts that the object does not touch dilute the share. Smaller: a guess that is wrong by as much is missed. Chosen
 /// by hand from 5 and 10 mm.
 pub(super) const NEAR_GUESS: f32 = 0.005;
-/// Distance from the object, m, within which the supporter counts as near it when shadows are looked at: the depth of a mug.
-///
-/// Larger: parts of the supporter that the object does not enclose dilute the share. Smaller: a peg in the middle of a hollow
-/// that nobody looked into is missed. Chosen by hand from 10 and 30 mm.
-pub(super) const NEAR_SHADOW: f32 = 0.03;
 /// Distance from the mesh, m, at which rays to the cameras start: more than its noise, so that a point that touches the mesh
 /// from the side of a camera is seen.
 pub(super) const OFF_MESH: f32 = 0.001;

@@ -908,17 +908,23 @@ fn what_is_in_the_shadow_of_all_cameras_is_not_seen() {
         test_shapes::tube(0.03, 0.04, 0.06),
         test_shapes::peg(Point::new(0.0, 0.0, -0.03), Point::new(0.0, 0.0, 0.03), 0.005, 0.002),
     );
+    // The tube hides this one from the side, too, but it is behind the tube, where the tube cannot be.
+    let behind = Scene::new(
+        test_shapes::tube(0.03, 0.04, 0.06),
+        test_shapes::peg(Point::new(-0.055, 0.0, -0.02), Point::new(-0.055, 0.0, 0.02), 0.005, 0.002),
+    );
     let (beside, above) = (Point::new(0.5, 0.0, 0.0), Point::new(0.0, 0.0, 0.5));
+    let shadow = |lab: &Lab, viewpoints: &[Point], unseen: f32| {
+        let body = Body { views: Views { viewpoints, unseen, needed: [0.0; 3] }, ..lab.body };
+        let monitor = Monitor::new();
+        super::unseen((&body, &lab.support), &Pose::identity(), &mut Meter::new(&monitor)).unwrap()
+    };
     scene.try_out(|lab| {
-        let shadow = |viewpoints: &[Point], unseen: f32| {
-            let body = Body { views: Views { viewpoints, unseen, needed: [0.0; 3] }, ..lab.body };
-            let monitor = Monitor::new();
-            super::unseen((&body, &lab.support), &Pose::identity(), &mut Meter::new(&monitor)).unwrap()
-        };
-        assert_eq!(shadow(&[], 0.0), Unseen::default());
-        assert_eq!(shadow(&[beside], 0.75), Unseen { object: 0.75, shadow: 1.0, ..Unseen::default() });
-        assert_eq!(shadow(&[beside, above], 0.5).shadow, 0.0);
+        assert_eq!(shadow(lab, &[], 0.0), Unseen::default());
+        assert_eq!(shadow(lab, &[beside], 0.75), Unseen { object: 0.75, shadow: 1.0, ..Unseen::default() });
+        assert_eq!(shadow(lab, &[beside, above], 0.5).shadow, 0.0);
     });
+    behind.try_out(|lab| assert_eq!(shadow(lab, &[beside], 0.75).shadow, 0.0));
 }
 
 /// A round wire bent to an open ring of [`RING`] around z, with a gap of this width, metres, around +y.

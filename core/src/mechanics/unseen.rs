@@ -1,6 +1,6 @@
 //! How much of what matters at a pose no camera has seen.
 
-use super::constants::{NEAR_GUESS, NEAR_SHADOW, OFF_MESH};
+use super::constants::{NEAR_GUESS, OFF_MESH};
 use super::{Body, Support};
 use crate::geometry::{Mesh, Point, Pose, Vector, fibonacci_direction, unit_or};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
@@ -12,8 +12,8 @@ use crate::monitor::{Meter, Stop};
 pub struct Unseen {
     /// Share of the directions from which no camera looked at the object, 0 to 1: the same for all poses.
     pub object: f32,
-    /// Share of the supporter near the object that is in the shadow of the object's mesh, 0 to 1. No camera saw that the
-    /// object is not there.
+    /// Share of the supporter near the object, in the box around its mesh along the axes of its coordinates, that is in the shadow
+    /// of the mesh, 0 to 1. No camera saw that the object is not there. What is behind the object, outside the box, does not count.
     pub shadow: f32,
     /// Share of the supporter close to the object that no camera saw and that was guessed, 0 to 1.
     pub supporter: f32,
@@ -94,32 +94,32 @@ pub(crate) fn unseen(
         !body.surface.any_hit(&(point + way * OFF_MESH), &way)
     };
     let (mut close, mut guessed, mut outwards) = (0_u32, 0_u32, Vector::zeros());
-    let (mut near, mut hidden) = (0_u32, 0_u32);
+    let (mut enclosed, mut hidden) = (0_u32, 0_u32);
+    let around = body.surface.aabb();
     for (position, patch) in support.positions().zip(support.patches) {
         let point = to_object * position;
-        if body.is_beyond(&point, NEAR_SHADOW) {
+        if !views.viewpoints.is_empty() && around.contains(&point) {
+            enclosed += 1;
+            let seen_by = views.viewpoints.iter().position(|viewpoint| sees(viewpoint, &point));
+            meter.rays(seen_by.map_or(views.viewpoints.len(), |index| index + 1))?;
+            hidden += u32::from(seen_by.is_none());
+        }
+        if body.is_beyond(&point, NEAR_GUESS) {
             continue;
         }
         meter.distance_queries(1)?;
-        let distance = body.field.distance(&point);
-        if distance < NEAR_GUESS {
+        if body.field.distance(&point) < NEAR_GUESS {
             close += 1;
             if patch.is_guessed() {
                 guessed += 1;
                 outwards += patch.normal;
             }
         }
-        if distance < NEAR_SHADOW && !views.viewpoints.is_empty() {
-            near += 1;
-            let seen_by = views.viewpoints.iter().position(|viewpoint| sees(viewpoint, &point));
-            meter.rays(seen_by.map_or(views.viewpoints.len(), |index| index + 1))?;
-            hidden += u32::from(seen_by.is_none());
-        }
     }
     let share = |part: u32, all: u32| part as f32 / all.max(1) as f32;
     Ok(Unseen {
         object: views.unseen,
-        shadow: share(hidden, near),
+        shadow: share(hidden, enclosed),
         supporter: share(guessed, close),
         object_view: views.needed,
         supporter_view: unit_or(outwards, Vector::zeros()).into(),

@@ -254,7 +254,7 @@ impl<'a> Settling<'a> {
         }
         self.counts.probable += 1;
         self.count_firm(&rest);
-        self.has_reliable |= probability::is_reliable(rest.probability, &rest.unseen);
+        self.has_reliable |= probability::is_reliable(rest.probability, &rest.margin, &rest.unseen);
         let pose = HangingPose { pose, rest: Some(rest), matched: start.matched };
         let merit = self.merit(&pose);
         if merit > (1.0 + CLEARLY_BETTER) * self.best.0 {

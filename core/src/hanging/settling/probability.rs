@@ -48,38 +48,42 @@ const RELIABLE: f32 = 0.9;
 // Doubt: minus the logarithm of the share of poses that hang, of those that would hang if what no camera has seen were as
 // it is guessed. Fitted with the factor in docs/PROBABILITY.md on scans of seed 12.
 
-/// Doubt for each part of the directions from which no camera looked at the object.
-const PER_OBJECT: f32 = 0.4;
-/// Doubt for each part of the supporter near the object that is in the shadow of the object's mesh.
-const PER_SHADOW: f32 = 2.4;
-/// Doubt for each part of the supporter close to the object that was guessed.
-const PER_SUPPORTER: f32 = 0.6;
+/// Doubt about a shallow pose for each part of the directions from which no camera looked at the object.
+const PER_OBJECT: f32 = 0.5;
+/// Doubt for each part of the supporter in the object's box that is in the shadow of the object's mesh.
+const PER_SHADOW: f32 = 1.8;
+/// Doubt about a shallow pose for each part of the supporter close to the object that was guessed.
+const PER_SUPPORTER: f32 = 0.8;
+/// Escape ratio from which a pose is deep: to come off, the centre of mass would have to rise by the lever. It then stays, however
+/// the guesses are wrong. In between, the doubt falls linearly.
+const DEEP: f32 = 1.0;
 
 /// Share of the poses that hang, of those that would hang if what no camera has seen were as it is guessed.
-fn share_that_is_right(unseen: &Unseen) -> f32 {
+fn share_that_is_right(unseen: &Unseen, escape_ratio: f32) -> f32 {
     let Unseen { object, shadow, supporter, .. } = unseen;
-    libm::expf(-(PER_OBJECT * object + PER_SHADOW * shadow + PER_SUPPORTER * supporter))
+    let shallowness = 1.0 - escape_ratio.min(DEEP) / DEEP;
+    libm::expf(-(PER_SHADOW * shadow + (PER_OBJECT * object + PER_SUPPORTER * supporter) * shallowness))
 }
 
 /// Whether a pose of this probability is firm: it is about as probable as a pose can be with what is unseen of the object
 /// and the supporter. A pose in the shadow is not, since another may be out of it.
-pub(super) fn is_firm(probability: f32, unseen: &Unseen) -> bool {
-    is_at_least(FIRM, probability, unseen)
+pub(super) fn is_firm(probability: f32, margin: &Margin, unseen: &Unseen) -> bool {
+    is_at_least(FIRM, probability, margin, unseen)
 }
 
 /// Whether a pose of this probability is reliable, as far as what is unseen allows.
-pub(super) fn is_reliable(probability: f32, unseen: &Unseen) -> bool {
-    is_at_least(RELIABLE, probability, unseen)
+pub(super) fn is_reliable(probability: f32, margin: &Margin, unseen: &Unseen) -> bool {
+    is_at_least(RELIABLE, probability, margin, unseen)
 }
 
-fn is_at_least(least: f32, probability: f32, unseen: &Unseen) -> bool {
-    probability >= least * share_that_is_right(&Unseen { shadow: 0.0, ..*unseen })
+fn is_at_least(least: f32, probability: f32, margin: &Margin, unseen: &Unseen) -> bool {
+    probability >= least * share_that_is_right(&Unseen { shadow: 0.0, ..*unseen }, margin.escape_ratio)
 }
 
 /// The least tilt, radians, at which a pose with this clearance, in metres, reaches `probability` if it survives the
-/// jolt test.
+/// jolt test and is deep.
 pub(super) fn least_tilt(probability: f32, clearance: f32, unseen: &Unseen) -> f32 {
-    let probability = probability / share_that_is_right(unseen);
+    let probability = probability / share_that_is_right(unseen, DEEP);
     if probability >= 1.0 {
         return f32::INFINITY;
     }
@@ -95,7 +99,7 @@ pub(super) fn of(margin: &Margin, clearance: f32, unseen: &Unseen) -> f32 {
         + PER_TILT * margin.least_tilt()
         + PER_SINKING * (margin.tilted_sinking - FREE_SINKING).clamp(0.0, MAX_SINKING)
         + PER_CLEARANCE * clearance.min(MAX_CLEARANCE);
-    share_that_is_right(unseen) / (1.0 + libm::expf(-score))
+    share_that_is_right(unseen, margin.escape_ratio) / (1.0 + libm::expf(-score))
 }
 
 /// The probability that a pose with this margin also stays when gravity tilts by [`Margin::JOLT`].
@@ -105,12 +109,26 @@ pub(super) fn of_robust(margin: &Margin, unseen: &Unseen) -> f32 {
         + ROBUST_PER_JOLT * margin.jolt_time
         + ROBUST_PER_TILT * mean_tilt
         + ROBUST_PER_ESCAPE * margin.escape_ratio.min(MAX_ESCAPE_RATIO);
-    share_that_is_right(unseen) / (1.0 + libm::expf(-score))
+    share_that_is_right(unseen, margin.escape_ratio) / (1.0 + libm::expf(-score))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_deep_pose_does_not_depend_on_guesses_but_on_what_is_in_the_shadow() {
+        let said = |escape_ratio: f32, unseen: &Unseen| {
+            of(&Margin { escape_ratio, ..Margin::default() }, 0.001, unseen)
+        };
+        let guessed = Unseen { object: 0.75, supporter: 0.5, ..Unseen::default() };
+        let hidden = Unseen { shadow: 0.5, ..Unseen::default() };
+        let seen = said(0.0, &Unseen::default());
+        assert!(said(0.0, &guessed) < said(0.5, &guessed) && said(0.5, &guessed) < seen);
+        assert_eq!(said(DEEP, &guessed), seen);
+        assert_eq!(said(2.0 * DEEP, &guessed), seen);
+        assert!(said(DEEP, &hidden) < seen && said(DEEP, &hidden) == said(0.0, &hidden));
+    }
 
     #[test]
     fn the_least_tilt_is_the_one_with_that_probability() {

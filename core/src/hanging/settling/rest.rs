@@ -95,7 +95,7 @@ impl Rest {
 
     /// Whether nothing but what nobody saw keeps the pose from being certain.
     pub(super) fn is_firm(&self) -> bool {
-        probability::is_firm(self.probability, &self.unseen)
+        probability::is_firm(self.probability, &self.margin, &self.unseen)
     }
 
     /// The contacts that carry the object at rest.
