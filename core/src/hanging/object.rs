@@ -73,7 +73,7 @@ impl<'m> Object<'m> {
             0 => None,
             voxels => Some(DistanceField::build(&surface, voxels, &mut arena, &mut meter)?),
         };
-        let views = Views::of(mesh, &mut arena)?;
+        let views = Views::new(mesh.viewpoints(), &surface.aabb().centre(), &mut arena)?;
         let slots = ObjectSlots::new(params, &mut arena)?;
         meter.check()?;
 

@@ -2,7 +2,7 @@
 
 use super::constants::{NEAR_GUESS, OFF_MESH};
 use super::{Body, Support};
-use crate::geometry::{Mesh, Point, Pose, Vector, fibonacci_direction, unit_or};
+use crate::geometry::{Point, Pose, Vector, fibonacci_direction, unit_or};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
 
@@ -48,15 +48,14 @@ impl<'a> Views<'a> {
     /// Bytes of memory, whatever the mesh.
     pub(crate) const BYTES: usize = array_bytes::<Point>(MAX_VIEWS);
 
-    /// The views of a mesh.
-    pub(crate) fn of(mesh: &Mesh, arena: &mut Arena<'a>) -> Result<Self, OutOfMemory> {
-        let given = mesh.viewpoints();
+    /// The views of a mesh from the viewpoints that are `given`; `centre` is the middle of the box around the mesh.
+    pub(crate) fn new(given: &[Point], centre: &Point, arena: &mut Arena<'a>) -> Result<Self, OutOfMemory> {
         let viewpoints = arena.slice::<Point>(given.len().min(MAX_VIEWS))?;
         let count = viewpoints.len();
         for (k, viewpoint) in viewpoints.iter_mut().enumerate() {
             *viewpoint = given[k * given.len() / count];
         }
-        let (unseen, needed) = unseen_directions(&mesh.aabb().centre(), viewpoints);
+        let (unseen, needed) = unseen_directions(centre, viewpoints);
         Ok(Self { viewpoints, unseen, needed })
     }
 }

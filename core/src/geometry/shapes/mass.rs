@@ -1,6 +1,6 @@
 //! Area, volume and centroids of a mesh.
 
-use super::{Mesh, triangle};
+use super::{Aabb, Mesh, triangle};
 use crate::disjoint_sets::DisjointSets;
 use crate::geometry::{Point, Vector};
 use crate::memory::{Arena, array_bytes};
@@ -48,7 +48,11 @@ impl MassProperties {
     }
 
     pub(crate) fn of(mesh: &Mesh, mut scratch: Arena, meter: &Meter) -> Result<Self, Unfinished> {
-        let aabb = mesh.aabb();
+        let mut aabb = Aabb::EMPTY;
+        for index in 0..mesh.triangles().len() {
+            meter.check_at(index)?;
+            aabb = mesh.corners(index).iter().fold(aabb, |aabb, corner| aabb.grow(corner));
+        }
         let mut holes = Holes::find(mesh, aabb.centre(), &mut scratch, meter)?;
         // Sums of thousands of terms, around the middle of the box, in double precision.
         let middle = aabb.centre().cast::<f64>();
@@ -153,11 +157,12 @@ struct Holes<'s> {
 impl<'s> Holes<'s> {
     fn find(mesh: &Mesh, centre: Point, scratch: &mut Arena<'s>, meter: &Meter) -> Result<Self, Unfinished> {
         let vertices = mesh.vertices();
-        let order = scratch.slice::<u32>(vertices.len())?;
-        let welded = scratch.slice::<u32>(vertices.len())?;
+        let order = scratch.unset::<u32>(vertices.len())?;
+        let welded = scratch.unset::<u32>(vertices.len())?;
         let edges = scratch.unset::<[u32; 2]>(mesh.triangles().len() * 3)?;
-        let rims = scratch.slice::<Rim>(vertices.len())?;
+        let rims = scratch.unset::<Rim>(vertices.len())?;
         for (slot, index) in order.iter_mut().zip(0..) {
+            meter.check_at(index as usize)?;
             *slot = index;
         }
         // Adding zero makes -0 and 0 the same.
@@ -191,6 +196,10 @@ impl<'s> Holes<'s> {
 
     fn measure_rims(&mut self, mesh: &Mesh, meter: &Meter) -> Result<(), Stop> {
         let Self { runs, connected, rims, centre, .. } = self;
+        for (step, rim) in rims.iter_mut().enumerate() {
+            meter.check_at(step)?;
+            *rim = Rim::zeroed();
+        }
         for_each_unmatched(runs, meter, |[a, b]| {
             let rim = &mut rims[connected.find(a) as usize];
             let [start, end] = [a, b].map(|vertex| mesh.vertices()[vertex as usize]);

@@ -54,8 +54,8 @@ const PER_OBJECT: f32 = 0.5;
 const PER_SHADOW: f32 = 1.8;
 /// Doubt about a shallow pose for each part of the supporter close to the object that was guessed.
 const PER_SUPPORTER: f32 = 0.8;
-/// Escape ratio from which a pose is deep: to come off, the centre of mass would have to rise by the lever. It then stays, however
-/// the guesses are wrong. In between, the doubt falls linearly.
+/// Escape ratio from which a pose is deep: to come off, the centre of mass would have to rise by the lever. Deep poses hang as
+/// often as if all had been seen; for others the doubt grows linearly. Of 0.5, 1 and 2 the likeliest on scans of seed 12.
 const DEEP: f32 = 1.0;
 
 /// Share of the poses that hang, of those that would hang if what no camera has seen were as it is guessed.
