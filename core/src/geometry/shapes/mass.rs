@@ -48,6 +48,7 @@ impl MassProperties {
     }
 
     pub(crate) fn of(mesh: &Mesh, mut scratch: Arena, meter: &Meter) -> Result<Self, Unfinished> {
+        // As `Mesh::aabb`, but ended by a cancel.
         let mut aabb = Aabb::EMPTY;
         for index in 0..mesh.triangles().len() {
             meter.check_at(index)?;
@@ -148,7 +149,7 @@ struct Holes<'s> {
     runs: &'s [[u32; 2]],
     /// Vertices connected by unmatched edges.
     connected: DisjointSets<'s>,
-    /// By the name of the connected vertices.
+    /// By the name of the connected vertices; unset where there are no such edges.
     rims: &'s mut [Rim],
     /// The point that the middles of edges are measured from.
     centre: Point,
