@@ -77,6 +77,39 @@ pub(crate) fn push_off_surface(
     Ok(None)
 }
 
+/// Whether a point of the supporter is deeper than `depth` metres inside the mesh at `pose`, exactly.
+pub(crate) fn is_deeper(
+    (body, support): (&Body, &Support),
+    pose: &Pose,
+    depth: f32,
+    meter: &mut Meter,
+) -> Result<bool, Stop> {
+    let (field, surface) = (body.field, body.surface);
+    // In walls that are thinner than a voxel the field is off by as much.
+    let near = field.voxel_size();
+    let to_object = pose.inverse();
+    let (mut found, mut queries) = (false, 0);
+    support.tree.bvh().descend(|_, node| {
+        let aabb = node.aabb();
+        let (centre, radius) = (to_object * aabb.centre(), 0.5 * aabb.diagonal());
+        queries += 1;
+        if found || body.is_beyond(&centre, radius) || field.distance(&centre) > radius + near {
+            return false;
+        }
+        let Some(points) = node.items().and_then(|items| support.tree.points().get(items)) else {
+            return true;
+        };
+        queries += points.len();
+        found = points.iter().any(|point| {
+            let at = to_object * point;
+            field.distance(&at) < near && surface.signed_distance(&at) < -depth
+        });
+        true
+    });
+    meter.distance_queries(queries)?;
+    Ok(found)
+}
+
 /// A point of the supporter that contradicts [`is_off_surface`].
 fn first_on_surface(
     scene: (&Body, &Support),

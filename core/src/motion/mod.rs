@@ -12,6 +12,7 @@ mod exits;
 mod failure;
 mod gripper;
 mod leave;
+mod lower;
 mod path;
 mod permit;
 mod placement;

@@ -24,8 +24,8 @@ impl Default for Waypoint {
 /// object turns about a fixed axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Path<'w> {
-    /// Poses of the object. To hang it: from the start to the release pose, and on to the rest pose. To take it off: the
-    /// other way.
+    /// Poses of the object. To hang it: from the start to the release pose, and on to the rest pose, or to where the supporter is
+    /// 0.3 mm inside the mesh of the object before that. To take it off: the other way.
     pub object: &'w [Waypoint],
     /// Index in `object` of the release pose; the waypoints between it and the rest pose lower the object into contact.
     pub release: usize,

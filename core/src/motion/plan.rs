@@ -9,6 +9,7 @@ use super::exits::{box_around, outside};
 use super::failure::PlanFailure;
 use super::gripper::Gripper;
 use super::leave::{open, straight};
+use super::lower::until_contact;
 use super::path::{MAX_CLEARANCE, Outline, Plan, PlanCounts, Shape, Waypoint};
 use super::permit::Permit;
 use super::placement::Placement;
@@ -164,11 +165,12 @@ impl<'a> Planner<'_, 'a, '_> {
         let mut written = Written { waypoints, count: 0, step: motion.step };
         written.route(&room.short, &body.centre);
         let release_index = written.count - 1;
-        let lowering = release.leg_to(&resting);
+        let lowering = until_contact(&space, &release, release.leg_to(&resting), self.meter)?;
         written.leg(&release, &lowering, &body.centre);
+        let lowered = release.after(&lowering, 1.0).pose(&body.centre);
         let object = written.count;
         if let Some(gripper) = motion.gripper {
-            self.way_of_gripper(&space, &gripper, (&region, &rest), &mut room)?;
+            self.way_of_gripper(&space, &gripper, (&region, &lowered), &mut room)?;
             written.route(&room.short, &gripper.centre());
         }
         let (needed, given) = (written.count, waypoints.len());

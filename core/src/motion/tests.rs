@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::{Aabb, Cloud, Point, Pose, Vector};
-use crate::hanging::{Distance, HangingPose, Hung, Object, Request, Supporter};
+use crate::hanging::{Distance, HangingPose, Hung, Object, Request, Rest, Supporter};
 use crate::memory::Limits;
 use crate::test_shapes::{Shape, peg, prism, torus};
 use crate::{Monitor, Params, Stop};
@@ -239,6 +239,29 @@ fn insertions_that_are_possible() {
             Err(failure) => panic!("{name}: {failure}"),
         }
     }
+}
+
+/// A rest pose that is 2 mm inside the supporter, as it may be where walls are thinner than the distance field resolves.
+#[test]
+fn a_path_ends_where_the_object_is_in_contact() {
+    let scene = Scene::on_peg();
+    scene.analyse(|object, supporter, params| {
+        let plan_to = |sunk: f32| {
+            let pose = Translation3::new(0.0, 0.0, -sunk) * scene.goal;
+            let goal = HangingPose { rest: Some(Rest::at(pose)), ..scene.goal() };
+            let task = Task { object, supporter, request: &Request::ANY, params, motion: Motion::DEFAULT };
+            let mut memory = vec![0; plan_bytes(&supporter.limits(), 0, Motion::DEFAULT.nodes)];
+            let mut waypoints = vec![Waypoint::default(); 2000];
+            let monitor = Monitor::new();
+            let planned = plan(&task, &goal, &mut waypoints, &mut |_| true, &mut memory, &monitor).unwrap();
+            let last = planned.path.unwrap().object.last().unwrap().pose;
+            scene.goal.translation.z - last.translation.z
+        };
+        // The top of its hole is a millimetre above the wire.
+        assert!((plan_to(0.001) - 0.001).abs() < 1e-6);
+        let sunk = plan_to(0.003);
+        assert!((0.0011..0.0014).contains(&sunk), "{sunk}");
+    });
 }
 
 #[test]

@@ -43,8 +43,9 @@ impl Problem<'_> {
     /// Plans, and replays the path.
     pub fn planned(&self) -> Result<Planned, PlanError> {
         let Task { supporter, request, motion, object, .. } = self.task;
-        let bytes = plan_bytes(&supporter.limits(), request.scene.len(), motion.nodes);
-        let mut memory = vec![0; bytes];
+        let bytes =
+            [request.scene.len(), 0].map(|scene| plan_bytes(&supporter.limits(), scene, motion.nodes));
+        let mut memory = vec![0; bytes[0]];
         let mut waypoints = vec![Waypoint::default(); WAYPOINTS];
         let start = Instant::now();
         let found =
@@ -52,7 +53,7 @@ impl Problem<'_> {
         let seconds = start.elapsed().as_secs_f64();
         let answer = found.path.map(|_| ());
         let scene = Scene { tilt: false, ..Scene::new(self.solid, self.obstacles) };
-        let mut planned = Planned::new(&answer, &found.counts, seconds, bytes);
+        let mut planned = Planned::new(&answer, &found.counts, seconds, [bytes[0], bytes[0] - bytes[1]]);
         let mut world = Bullet::default().world(&scene);
         planned.ends = [motion.start.as_ref(), Some(&self.goal.pose)].map(|end| {
             world.release(&end?.cast());

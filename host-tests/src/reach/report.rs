@@ -80,24 +80,25 @@ fn milliseconds<'a>(plans: impl Iterator<Item = &'a Planned> + Clone) -> String 
 
 fn scenes(rows: &[Row], has_total: bool) -> String {
     let mut text = String::from(
-        "| scene | pairs | path found | of these pass the replay | median ms | p95 ms | max ms | median clearance, mm | memory, MiB |\n\
-         |---|--:|--:|--:|--:|--:|--:|--:|--:|\n",
+        "| scene | pairs | path found | of these pass the replay | median ms | p95 ms | max ms | median clearance, mm | memory, MiB | and scene, MiB |\n\
+         |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
     );
     let mut line = |name: &str, rows: &[&Row]| {
         let plans = || rows.iter().filter_map(|row| row.plan.as_ref());
         let found = || plans().filter(|plan| plan.is_found());
         let pass = found().filter(|plan| plan.replay.is_some_and(|replay| replay.passes)).count();
         let clearance = quantile(found().map(|plan| 1000.0 * f64::from(plan.clearance)), 0.5);
-        let bytes = plans().map(|plan| plan.bytes).max().unwrap_or_default();
+        let mebibytes = |bytes: Option<usize>| bytes.unwrap_or_default() as f64 / 1024.0 / 1024.0;
+        let scene = mebibytes(plans().map(|plan| plan.bytes[1]).max());
+        let own = mebibytes(plans().map(|plan| plan.bytes[0] - plan.bytes[1]).max());
         let _ = writeln!(
             text,
-            "| {name} | {} | {} | {} | {} | {} | {:.1} |",
+            "| {name} | {} | {} | {} | {} | {} | {own:.1} | {scene:.1} |",
             plans().count(),
             wilson(found().count(), plans().count()),
             wilson(pass, found().count()),
             milliseconds(plans()),
             number(clearance, 1),
-            bytes as f64 / 1024.0 / 1024.0
         );
     };
     for (name, rows) in by(rows, |row| &row.scene) {

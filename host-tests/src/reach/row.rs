@@ -35,8 +35,8 @@ pub struct Planned {
     pub message: String,
     /// Time for the plan alone, s.
     pub seconds: f64,
-    /// Working memory, bytes.
-    pub bytes: usize,
+    /// Working memory, bytes: all of it, and that for the tree over the points of the scene.
+    pub bytes: [usize; 2],
     /// Poses sampled.
     pub samples: usize,
     /// Nodes of the trees.
@@ -55,7 +55,12 @@ pub struct Planned {
 
 impl Planned {
     /// The answer with its counts.
-    pub fn new(answer: &Result<(), PlanFailure>, counts: &PlanCounts, seconds: f64, bytes: usize) -> Self {
+    pub fn new(
+        answer: &Result<(), PlanFailure>,
+        counts: &PlanCounts,
+        seconds: f64,
+        bytes: [usize; 2],
+    ) -> Self {
         let (answer, message) = match answer {
             Ok(()) => (PATH.into(), String::new()),
             Err(failure) => (reason(failure).into(), failure.to_string()),

@@ -152,7 +152,6 @@ pub fn tree(seed: u64, options: &Options) -> Result<Option<Row>, PlanError> {
     let mut memory = vec![0; predict_bytes(&supporter.limits())];
     predict_many(&all, &supporter, &Request::ANY, &params, &mut poses, &mut memory, &monitor)
         .expect("the params are valid");
-    let Some(goal) = poses[last] else { return Ok(None) };
     let others = || (0..mugs.len()).filter(|index| *index != last);
     let placed: Vec<(usize, Pose)> =
         others().filter_map(|index| Some((index, rest(poses[index].as_ref()?)))).collect();
@@ -160,10 +159,10 @@ pub fn tree(seed: u64, options: &Options) -> Result<Option<Row>, PlanError> {
         placed.iter().map(|&(index, pose)| Hung { object: &objects[index], pose }).collect();
     let obstacles = tree.solid.with(placed.iter().map(|&(index, pose)| (&mugs[index].solid, pose)));
     let solid = &mugs[last].solid;
-    let scene = Scene { tilt: false, ..Scene::new(solid, &obstacles) };
-    if !Bullet::default().judge(&scene, &goal.pose).success() {
-        return Ok(None);
-    }
+    let request = Request { hung: &hung, ..Request::ANY };
+    // It comes when all others hang, whatever their order was.
+    let goal = hanging((&objects[last], &supporter), (solid, &obstacles), &request, &params);
+    let Some(goal) = goal else { return Ok(None) };
     let parts = (&tree.solid, &tree.bars[..]);
     let Some(joint) = joined((solid, &mugs[last].openings), parts, &rest(&goal)) else { return Ok(None) };
     let grip = Grip::of(solid, &rest(&goal), &obstacles);
@@ -174,7 +173,6 @@ pub fn tree(seed: u64, options: &Options) -> Result<Option<Row>, PlanError> {
     let [x, y, _] = double(tree.bars[joint.bar].direction);
     let mut random = Random::named("mug on a tree", seed);
     let start = start(solid, &obstacles, &goal.pose, unit([x, y, 0.0]), gripper.as_ref(), &mut random);
-    let request = Request { hung: &hung, ..Request::ANY };
     let motion = Motion { start: Some(start), gripper, ..options.motion };
     let task =
         Task { object: &objects[last], supporter: &supporter, request: &request, params: &params, motion };

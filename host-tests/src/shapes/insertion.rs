@@ -23,7 +23,7 @@ const END: f64 = 0.05;
 /// free end.
 ///
 /// - A closed hole comes over the free end of a bar if the end is not wider than the hole. A wider end may pass a hole that
-///   is longer in one direction, which is not told.
+///   is longer in one direction, which is not told. Nor is it of a wire that has no bar, as the bracket that carries a carabiner.
 /// - A closed hole around a bar without a free end is linked with it. Without a wall, it may come over the plates at its
 ///   ends, which is not told.
 /// - Everything else comes from the open side: a hook over the bar, a hollow over the end, a neck between two free ends, and
@@ -38,7 +38,7 @@ pub fn insertion(
     let (opening, bar) = (&openings[joint.opening], &bars[joint.bar]);
     match opening.kind {
         OpeningKind::Hole if bar.has_free_end => {
-            if opening.clear_radius > bar.pass_radius {
+            if joint.is_on_bar && opening.clear_radius > bar.pass_radius {
                 Insertion::Possible
             } else {
                 Insertion::Unknown

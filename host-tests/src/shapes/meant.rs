@@ -47,6 +47,8 @@ pub struct Joint {
     pub opening: usize,
     /// Index of the bar nearest to the place where it passes the opening.
     pub bar: usize,
+    /// Whether that bar is a part of the wire that passes the opening: nothing tells the ends of any other wire.
+    pub is_on_bar: bool,
     /// The place, in supporter coordinates, m.
     pub at: [f32; 3],
 }
@@ -65,14 +67,15 @@ pub struct Joint {
 pub fn joined(object: (&Solid, &[Opening]), supporter: (&Solid, &[Bar]), rest: &Pose) -> Option<Joint> {
     let (surface, lines) = (Surface::new(object.0), Lines::new(supporter));
     let joints = object.1.iter().enumerate().filter_map(|(index, opening)| {
-        let at = lines.joined(&surface, opening, rest)?;
+        let (at, segment) = lines.joined(&surface, opening, rest)?;
         let nearest = |a: &(usize, &Bar), b: &(usize, &Bar)| {
             let distance = |bar: &Bar| length(sub(at, nearest_on(ends(bar), at)));
             distance(a.1).total_cmp(&distance(b.1))
         };
-        let bar = supporter.1.iter().enumerate().min_by(nearest)?.0;
+        let (bar, nearest) = supporter.1.iter().enumerate().min_by(nearest)?;
+        let is_on_bar = segment.is_none_or(|segment| lines.is_same_wire(segment, nearest));
         let at = super::vector::single(at);
-        Some(Joint { kind: opening.kind.hangs(), opening: index, bar, at })
+        Some(Joint { kind: opening.kind.hangs(), opening: index, bar, is_on_bar, at })
     });
     joints.min_by_key(|joint| rank(&joint.kind))
 }
@@ -90,6 +93,8 @@ fn nearest_on([from, to]: [V; 2], p: V) -> V {
     along(from, t, reach)
 }
 
+/// Distance below which the ends of two segments are one point, m: a wire is made of segments from end to end.
+const SAME_POINT: f64 = 1e-6;
 /// Number of rays to all sides.
 const SIDES: usize = 16;
 /// Largest half depth of a hole, m.
@@ -150,7 +155,8 @@ impl Lines {
         let segments: Vec<([V; 2], f64)> = capsules.collect();
         let flat = bars.iter().filter(|bar| bar.pass_radius.is_infinite());
         let all: Vec<V> = segments.iter().flat_map(|segment| segment.0).collect();
-        let is_free = |tip: &V| all.iter().filter(|other| length(sub(**other, *tip)) < 1e-6).count() == 1;
+        let is_free =
+            |tip: &V| all.iter().filter(|other| length(sub(**other, *tip)) < SAME_POINT).count() == 1;
         Self {
             flat: flat.map(|bar| (ends(bar), f64::from(bar.radius))).collect(),
             tips: all.iter().copied().filter(is_free).collect(),
@@ -158,18 +164,42 @@ impl Lines {
         }
     }
 
-    /// Where a bar is joined with an opening, in supporter coordinates.
-    fn joined(&self, surface: &Surface, opening: &Opening, rest: &Pose) -> Option<V> {
+    /// Whether a segment and a bar are parts of one wire: from end to end, other segments lead from the one to the other.
+    fn is_same_wire(&self, segment: usize, bar: &Bar) -> bool {
+        let [from, to] = ends(bar);
+        let middle = scale(add(from, to), 0.5);
+        let is_joined = |a: &[V; 2], b: &[V; 2]| {
+            a.iter().any(|end| b.iter().any(|other| length(sub(*end, *other)) < SAME_POINT))
+        };
+        let mut wire = vec![segment];
+        let mut next = 0;
+        while let Some(&here) = wire.get(next) {
+            let (here, radius) = &self.segments[here];
+            if length(sub(middle, nearest_on(*here, middle))) < *radius {
+                return true;
+            }
+            let beside = (0..self.segments.len()).filter(|other| is_joined(here, &self.segments[*other].0));
+            let new: Vec<usize> = beside.filter(|other| !wire.contains(other)).collect();
+            wire.extend(new);
+            next += 1;
+        }
+        false
+    }
+
+    /// Where a bar is joined with an opening, in supporter coordinates, and its segment if a single one passes the opening.
+    fn joined(&self, surface: &Surface, opening: &Opening, rest: &Pose) -> Option<(V, Option<usize>)> {
         let to_object = rest.inverse();
         let moved = |pose: &Pose, v: V| -> V {
             let moved = pose * Point::from(super::vector::single(v));
             double(moved.into())
         };
         match opening.kind {
-            OpeningKind::Hole | OpeningKind::Hook => self.segments.iter().find_map(|(segment, _)| {
-                let segment = segment.map(|end| moved(&to_object, end));
-                passes(surface, opening, segment).map(|at| moved(rest, at))
-            }),
+            OpeningKind::Hole | OpeningKind::Hook => {
+                self.segments.iter().enumerate().find_map(|(index, (segment, _))| {
+                    let segment = segment.map(|end| moved(&to_object, end));
+                    passes(surface, opening, segment).map(|at| (moved(rest, at), Some(index)))
+                })
+            }
             OpeningKind::Rim => {
                 let is_inside = |tip: V| {
                     let ground = scale(double(opening.axis), -1.0);
@@ -177,12 +207,13 @@ impl Lines {
                         .chain([ground])
                         .all(|way| surface.distance(tip, way).is_finite())
                 };
-                self.tips.iter().copied().find(|tip| is_inside(moved(&to_object, *tip)))
+                let tip = self.tips.iter().find(|tip| is_inside(moved(&to_object, **tip)))?;
+                Some((*tip, None))
             }
             OpeningKind::Neck { head_radius } => {
                 let (centre, axis) = (double(opening.centre), double(opening.axis));
                 let stem = STEM.map(|s| moved(rest, along(centre, s, axis)));
-                self.beside(stem, f64::from(head_radius))
+                Some((self.beside(stem, f64::from(head_radius))?, None))
             }
         }
     }

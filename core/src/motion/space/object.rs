@@ -9,6 +9,9 @@ use crate::monitor::Meter;
 use crate::motion::failure::{Mover, Obstacle};
 use nalgebra::Rotation3;
 
+/// Lower bound of the distance of what is in a ball, in radii of the ball, from which it is exact enough beyond [`PATCH_RANGE`]: half of
+/// the distance of the centre. Where two flat sides face each other, exact distances would take pieces of a millimetre all over.
+const BOUND_PER_RADIUS: f32 = 1.0;
 /// Most halvings of a triangle until it is as small as distances are told.
 const MAX_HALVINGS: usize = 24;
 /// Radius of a piece of a triangle that is not halved any more, metres: its corners tell its distance.
@@ -45,7 +48,7 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
         }
         self.queries += 1;
         let distance = self.body.field.distance(centre) - radius;
-        if distance >= EXACT_UP_TO {
+        if distance >= EXACT_UP_TO || distance >= PATCH_RANGE && distance >= radius * BOUND_PER_RADIUS {
             self.offer(distance, centre, Vector::zeros(), obstacle);
             return None;
         }
@@ -163,31 +166,56 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
         });
     }
 
-    /// A triangle in object coordinates. It is halved where its bounding ball alone does not tell. What is found is of no use
-    /// where the meter stops the queries: the caller asks it next.
+    /// A triangle in object coordinates. It is halved where its bounding ball alone does not tell, and the nearer half comes first.
+    /// What is found is of no use where the meter stops the queries: the caller asks it next.
     fn triangle(&mut self, triangle: [Point; 3], obstacle: Obstacle) {
-        let mut waiting = heapless::Vec::<[Point; 3], { MAX_HALVINGS + 1 }>::new();
-        let _ = waiting.push(triangle);
-        while let Some([a, b, c]) = waiting.pop() {
+        let mut waiting = heapless::Vec::<(Piece, f32), { MAX_HALVINGS + 1 }>::new();
+        let mut next = self.piece(triangle, obstacle);
+        while let Some((piece, bound)) = next.or_else(|| waiting.pop()) {
+            next = None;
             if self.meter.is_some_and(|meter| meter.check_with(self.queries).is_err()) {
                 return;
             }
-            let centre = Point::from((a.coords + b.coords + c.coords) / 3.0);
-            let radius = [a, b, c].iter().map(|corner| (corner - centre).norm()).fold(0.0, f32::max);
-            if self.bound(&centre, radius, obstacle).is_none() {
+            if bound >= self.limit() {
                 continue;
             }
-            if radius < SMALLEST_PIECE || waiting.len() + 2 > MAX_HALVINGS {
-                for corner in [a, b, c, centre] {
+            if bound + piece.radius < self.limit() {
+                self.queries += 1;
+                let (distance, gradient) = self.body.field.sample(&piece.centre);
+                self.offer(distance, &piece.centre, gradient, obstacle);
+            }
+            if piece.radius < SMALLEST_PIECE || waiting.len() + 2 > MAX_HALVINGS {
+                for corner in piece.corners {
                     self.queries += 1;
                     let (distance, gradient) = self.body.field.sample(&corner);
                     self.offer(distance, &corner, gradient, obstacle);
                 }
                 continue;
             }
-            for half in halves([a, b, c]) {
-                let _ = waiting.push(half);
-            }
+            next = match halves(piece.corners).map(|half| self.piece(half, obstacle)) {
+                [Some(one), Some(other)] => {
+                    let (near, far) = if other.1 < one.1 { (other, one) } else { (one, other) };
+                    let _ = waiting.push(far);
+                    Some(near)
+                }
+                [only, None] | [None, only] => only,
+            };
         }
     }
+
+    /// A piece of a triangle and a lower bound of its distance; `None` if it need not be looked at.
+    fn piece(&mut self, corners: [Point; 3], obstacle: Obstacle) -> Option<(Piece, f32)> {
+        let [a, b, c] = corners;
+        let centre = Point::from((a.coords + b.coords + c.coords) / 3.0);
+        let radius = corners.iter().map(|corner| (corner - centre).norm()).fold(0.0, f32::max);
+        Some((Piece { corners, centre, radius }, self.bound(&centre, radius, obstacle)?))
+    }
+}
+
+/// A piece of a triangle in object coordinates, with the ball around it.
+struct Piece {
+    corners: [Point; 3],
+    centre: Point,
+    /// Metres.
+    radius: f32,
 }

@@ -15,11 +15,15 @@ const CUBE: f32 = 0.001;
 /// growth`); with 2 cm, of a cloud without normals 13 instead of 5 % of the contacts get a wrong one (`cargo test -p host-tests
 /// --test normals`).
 const PLANE_CUBE: f32 = 0.0125;
+/// The same at the rim of a plane, metres: the mean of the points that are merged is off the rim by half as much. A path may be off by a
+/// millimetre (`make reach`: with [`PLANE_CUBE`] the base of a mug tree ended up to 2 mm early).
+const RIM_CUBE: f32 = 0.003;
 /// The same, far from all that is not on a plane.
 const FAR_CUBE: f32 = 0.05;
 /// Keep the cubes of planes apart from others.
 const PLANE_TAG: u32 = 1 << 31;
 const FAR_TAG: u32 = 1 << 30;
+const RIM_TAG: u32 = 1 << 29;
 /// Points per occupied cube above which a cloud is dense.
 const DENSE: usize = 2;
 
@@ -79,16 +83,21 @@ pub(super) fn merge<'s>(
     )?;
     let cubes = group(normals, |index| cube(&points[index], CUBE), table, names, meter, |_, _| {})?;
     let is_dense = points.len() > DENSE * cubes;
-    let place = |index: usize| match (on_plane[index], is_dense) {
-        (1, _) if near.has(&points[index]) => cube(&points[index], PLANE_CUBE).map(|x| x ^ PLANE_TAG),
-        (1, _) => cube(&points[index], FAR_CUBE).map(|x| x ^ FAR_TAG),
-        (_, true) => cube(&points[index], CUBE),
-        (_, false) => bits(&points[index]),
+    let place = |index: usize| {
+        let point = &points[index];
+        let tagged = |edge: f32, tag: u32| cube(point, edge).map(|x| x ^ tag);
+        match (on_plane[index], is_dense) {
+            (planes::INSIDE, _) if near.has(point) => tagged(PLANE_CUBE, PLANE_TAG),
+            (planes::RIM, _) if near.has(point) => tagged(RIM_CUBE, RIM_TAG),
+            (planes::INSIDE | planes::RIM, _) => tagged(FAR_CUBE, FAR_TAG),
+            (_, true) => cube(point, CUBE),
+            (_, false) => bits(point),
+        }
     };
     // Sums of offsets from the first point, which keep their precision.
     let count = group(normals, place, table, names, meter, |index, kept| {
         if members[kept] == 0 {
-            (firsts[kept], is_on_plane[kept]) = (points[index], on_plane[index]);
+            (firsts[kept], is_on_plane[kept]) = (points[index], u8::from(on_plane[index] > 0));
             (sums[kept], normal_sums[kept]) = (Point::origin(), normals[index]);
         } else {
             sums[kept] += points[index] - firsts[kept];

@@ -5,6 +5,7 @@ use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop, Unfinished};
 use crate::perception::plane::Plane;
 use crate::random::Random;
+use heapless::Vec;
 
 // Physics: what a large plane is.
 
@@ -15,9 +16,15 @@ const FINE: Resolution = Resolution { cell: 0.025, square: 7 };
 const COARSE: Resolution = Resolution { cell: 0.05, square: 4 };
 /// Least share of the cells of the square that have points.
 const MIN_FILL: f32 = 0.9;
+/// Least share of the places of a plane that have points, of those that would have some if as many points were strewn over it. Of
+/// a lattice of wires 6 mm thick every 2 cm, two thirds of the places have wire.
+const MIN_SOLID: f32 = 0.85;
 /// Most points of a cell whose neighbours may be empty by chance: of cells with two points on average a seventh is empty, and
 /// most of the others have no more than this. On a rack of bars they have many.
 const FEW: u8 = 3;
+
+/// A cell with fewer points than one beside it, by this factor, is cut by the rim of the plane.
+const SLIVER: u8 = 4;
 
 // Tolerances.
 
@@ -34,6 +41,10 @@ const MAX_PLANES: usize = 8;
 const MIN_SHARE: usize = 25;
 /// Cells of a grid along an edge: it spans 3.2 or 6.4 m.
 const CELLS: usize = 128;
+/// Cells that tell a plane from a lattice of wires.
+const MAX_LOOKED_INTO: usize = 32;
+/// Places of such a cell along an edge: bits of a `u64`.
+const PLACES: usize = 8;
 
 /// Bytes of working memory.
 pub(super) const fn scratch_bytes() -> usize {
@@ -56,10 +67,15 @@ struct Grid {
     resolution: Resolution,
 }
 
-/// Marks with 1 the points on large planes.
+/// Mark of a point on a large plane, around which there is nothing but plane.
+pub(super) const INSIDE: u8 = 1;
+/// Mark of a point on a large plane near its rim.
+pub(super) const RIM: u8 = 2;
+
+/// Marks the points on large planes with [`INSIDE`] or [`RIM`].
 pub(super) fn mark(
     points: &[Point],
-    is_on_plane: &mut [u8],
+    on_plane: &mut [u8],
     mut scratch: Arena,
     meter: &Meter,
 ) -> Result<(), Unfinished> {
@@ -79,10 +95,18 @@ pub(super) fn mark(
             grid = Grid::on(plane, COARSE);
             grid.fill(points, cells, meter)?;
         }
-        if mark_squares(cells, grid.resolution.square) {
-            for (step, (flag, point)) in is_on_plane.iter_mut().zip(points).enumerate() {
+        if mark_squares(cells, grid.resolution.square) && grid.is_solid(points, cells, meter)? {
+            for (step, (flag, point)) in on_plane.iter_mut().zip(points).enumerate() {
                 meter.check_at(step)?;
-                *flag |= u8::from(grid.cell(point).is_some_and(|cell| is_in_or_beside_square(cells, cell)));
+                match grid.cell(point) {
+                    Some(cell) if is_in_or_beside_square(cells, cell) => {
+                        // A cell that the rim cuts to a sliver has few points.
+                        let least = cells.get(cell).map_or(0, |own| own / POINT / SLIVER);
+                        let is_inside = around(cells, cell).all(|c| c & OCCUPIED > 0 && c / POINT >= least);
+                        *flag = if is_inside { INSIDE } else { (*flag).max(RIM) };
+                    }
+                    _ => {}
+                }
             }
         }
         // The next plane is searched among the other probes.
@@ -129,6 +153,37 @@ impl Grid {
         let occupied = || cells.iter().filter(|cell| **cell > 0);
         Ok(2 * occupied().filter(|cell| **cell / POINT <= FEW).count() > occupied().count())
     }
+
+    /// Whether the plane is more than a lattice of wires: in some of its cells, points are nearly everywhere.
+    fn is_solid(&self, points: &[Point], cells: &[u8], meter: &Meter) -> Result<bool, Stop> {
+        let is_inner = |cell: &usize| cells[*cell] & LARGE > 0 && around(cells, *cell).all(|c| c & LARGE > 0);
+        let inner = (0..cells.len()).filter(is_inner).count();
+        let apart = inner.div_ceil(MAX_LOOKED_INTO).max(1);
+        // The cells, how many points each has, and in which of its places.
+        let mut looked_into = Vec::<(usize, u32, u64), MAX_LOOKED_INTO>::new();
+        for cell in (0..cells.len()).filter(is_inner).step_by(apart) {
+            let _ = looked_into.push((cell, 0, 0));
+        }
+        for (step, point) in points.iter().enumerate() {
+            meter.check_at(step)?;
+            let Some(cell) = self.cell(point) else { continue };
+            let Ok(index) = looked_into.binary_search_by_key(&cell, |looked_into| looked_into.0) else {
+                continue;
+            };
+            let place = self.axes.map(|axis| {
+                let at = (point - self.plane.origin).dot(&axis) / self.resolution.cell;
+                ((at - libm::floorf(at)) * PLACES as f32) as usize % PLACES
+            });
+            let (_, count, places) = &mut looked_into[index];
+            *count += 1;
+            *places |= 1 << (place[1] * PLACES + place[0]);
+        }
+        let all = (PLACES * PLACES) as f32;
+        let strewn = |count: u32| all * (1.0 - libm::expf(-(count as f32) / all));
+        let expected: f32 = looked_into.iter().map(|(_, count, _)| strewn(*count)).sum();
+        let found: f32 = looked_into.iter().map(|(_, _, places)| places.count_ones() as f32).sum();
+        Ok(found >= MIN_SOLID * expected)
+    }
 }
 
 /// Bit of a cell that has points.
@@ -141,9 +196,15 @@ const POINT: u8 = 4;
 /// Whether a cell or one of those around it is in a filled square: at the rim of a plane a cell may be cut narrow, and
 /// those beside it empty.
 fn is_in_or_beside_square(cells: &[u8], cell: usize) -> bool {
-    let is_large =
-        |offset: usize| cells.get((cell + offset).wrapping_sub(CELLS + 1)).is_some_and(|c| c & LARGE > 0);
-    (0..9).any(|k| is_large(k / 3 * CELLS + k % 3))
+    around(cells, cell).any(|cell| cell & LARGE > 0)
+}
+
+/// A cell and those around it; empty beyond the grid.
+fn around(cells: &[u8], cell: usize) -> impl Iterator<Item = u8> + '_ {
+    (0..9).map(move |k| {
+        let beside = (cell + k / 3 * CELLS + k % 3).checked_sub(CELLS + 1);
+        beside.and_then(|beside| cells.get(beside)).copied().unwrap_or(0)
+    })
 }
 
 /// Marks the cells with points in squares with edges of `square` cells that are filled. Returns whether there is one.

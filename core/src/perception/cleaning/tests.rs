@@ -180,3 +180,42 @@ fn a_wall_is_thinned_the_more_the_farther_it_is_from_what_hangs() {
     }
     assert!(in_square(-0.05, -0.05) > 3 * in_square(0.8, 0.8));
 }
+
+#[test]
+fn a_lattice_of_wires_is_no_plane_and_the_rim_of_a_plane_stays_where_it_is() {
+    let mut random = Random::new(11);
+    // Wires of 6 mm every 2 cm, both ways, 40 cm long.
+    let wires = |(k, ahead): (usize, bool)| {
+        let at = 0.02 * k as f32;
+        let along = |_| {
+            let (s, c) = (std::f32::consts::TAU * random.next_f32()).sin_cos();
+            let (x, y) = (0.4 * random.next_f32(), at + 0.003 * c);
+            if ahead { Point::new(x, y, 0.003 * s) } else { Point::new(y, x, 0.003 * s) }
+        };
+        (0..1500).map(along).collect::<Vec<_>>()
+    };
+    let lattice: Vec<Point> = (0..21).flat_map(|k| [(k, false), (k, true)]).flat_map(wires).collect();
+    assert_eq!(cleaned(&lattice, &unknown(&lattice)).2.on_planes, 0);
+
+    // A table top of 40 cm with a bar above it.
+    let mut points = bar(3000, Point::new(0.0, 0.0, 0.1), &mut random);
+    let surface = points.len();
+    points.extend(square(40_000, 0.4, Point::origin(), 0.0, &mut random));
+    let needed = model_bytes(merge::bytes(points.len()) + merge::scratch_bytes(points.len()));
+    let mut memory = vec![0; needed];
+    let mut arena = Arena::new(&mut memory, needed).unwrap();
+    let kept = merge::merge(&points, &unknown(&points), &mut arena, &Meter::unwatched()).unwrap();
+    let on_table = kept.names.iter().zip(&*kept.points).filter(|(name, _)| **name as usize >= surface);
+    let top: Vec<Point> = on_table.map(|(_, point)| *point).collect();
+    // Each point of the table had one within a few millimetres; now every place of the rim still has.
+    for k in 0..80 {
+        let along = 0.395 * (k as f32 / 79.0 - 0.5);
+        for rim in [Point::new(0.2, along, 0.0), Point::new(along, -0.2, 0.0)] {
+            let nearest = top.iter().map(|point| (point - rim).norm()).fold(f32::MAX, f32::min);
+            assert!(nearest < 0.005, "{rim}: {nearest}");
+        }
+    }
+    // Inside there are fewer: the square of the inner 30 cm in cubes of 12.5 mm.
+    let inside = top.iter().filter(|point| point.x.abs() < 0.15 && point.y.abs() < 0.15).count();
+    assert!(inside < 25 * 25 + 50, "{inside}");
+}

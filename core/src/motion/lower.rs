@@ -1,0 +1,36 @@
+//! The last millimetres of a path: from the release pose down to the rest pose, or to where the object is in contact before.
+
+use super::placement::{Leg, Placement};
+use super::space::Space;
+use crate::mechanics::is_deeper;
+use crate::monitor::{Meter, Stop};
+
+/// Depth to which the supporter may be inside the mesh of the object at the end of a path, metres. Rest poses are found with the
+/// distance field, whose error in thin walls is that of a voxel; a robot that goes on to such a pose presses. More than the depth at
+/// which the mechanics corrects no penetration, 0.1 mm; less than the millimetre that a path may be off.
+const DEEPEST: f32 = 0.0003;
+/// Halvings of the way down: of a centimetre, to less than a tenth of a millimetre.
+const HALVINGS: usize = 7;
+
+/// The part of `lowering`, the way from the release pose to the rest pose, at the end of which the object is in contact.
+pub(super) fn until_contact(
+    space: &Space,
+    release: &Placement,
+    lowering: Leg,
+    meter: &mut Meter,
+) -> Result<Leg, Stop> {
+    let Some(body) = &space.moving.body else { return Ok(lowering) };
+    let mut is_deep = |share: f32| {
+        let pose = release.after(&lowering, share).pose(&space.moving.centre);
+        is_deeper((body, space.obstacles.support), &pose, DEEPEST, meter)
+    };
+    if !is_deep(1.0)? {
+        return Ok(lowering);
+    }
+    let (mut free, mut deep) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (free + deep);
+        if is_deep(middle)? { deep = middle } else { free = middle }
+    }
+    Ok(lowering.scaled(free))
+}
