@@ -9,8 +9,9 @@ use crate::monitor::Meter;
 use crate::motion::failure::{Mover, Obstacle};
 use nalgebra::Rotation3;
 
-/// Lower bound of the distance of what is in a ball, in radii of the ball, from which it is exact enough beyond [`PATCH_RANGE`]: half of
-/// the distance of the centre. Where two flat sides face each other, exact distances would take pieces of a millimetre all over.
+/// Lower bound of the distance of what is in a ball, in radii of the ball, from which it is exact enough beyond [`PATCH_RANGE`]; with 1
+/// it is half of the distance of the centre. Larger: where two flat sides face each other, thousands of small pieces are looked at.
+/// Smaller: shorter steps. Set by hand: in `make reach` a path beside another bag takes 0.6 of the time.
 const BOUND_PER_RADIUS: f32 = 1.0;
 /// Most halvings of a triangle until it is as small as distances are told.
 const MAX_HALVINGS: usize = 24;

@@ -16,14 +16,16 @@ const FINE: Resolution = Resolution { cell: 0.025, square: 7 };
 const COARSE: Resolution = Resolution { cell: 0.05, square: 4 };
 /// Least share of the cells of the square that have points.
 const MIN_FILL: f32 = 0.9;
-/// Least share of the places of a plane that have points, of those that would have some if as many points were strewn over it. Of
-/// a lattice of wires 6 mm thick every 2 cm, two thirds of the places have wire.
+/// Least share of the places of a plane that have points, of those that would have some if as many points were strewn over it at
+/// random. Larger: planes with noise or small holes count as lattices. Smaller: lattices count as planes: of wires 6 mm thick every
+/// 2 cm, two thirds of the places have wire.
 const MIN_SOLID: f32 = 0.85;
 /// Most points of a cell whose neighbours may be empty by chance: of cells with two points on average a seventh is empty, and
 /// most of the others have no more than this. On a rack of bars they have many.
 const FEW: u8 = 3;
 
-/// A cell with fewer points than one beside it, by this factor, is cut by the rim of the plane.
+/// Ratio of the points of a cell to those of one beside it above which the other is a sliver, cut by the rim of the plane. Larger:
+/// slivers hide the rim from the cells behind them, which are thinned. Smaller: chance makes rims inside a sparse plane. Set by hand.
 const SLIVER: u8 = 4;
 
 // Tolerances.
