@@ -186,7 +186,8 @@ class Path:
     seconds: Matrix
     """Times of the waypoints, shape (n,)."""
     poses: Matrix
-    """Poses of the object, shape (n, 4, 4): from the start over the release pose to rest, or the other way."""
+    """Poses of the object, shape (n, 4, 4): from the start over the release pose to rest, or to where the
+    object is in contact before that; or the other way."""
     release: int
     """Index of the release pose."""
     gripper_seconds: Matrix

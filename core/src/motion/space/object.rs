@@ -9,10 +9,6 @@ use crate::monitor::Meter;
 use crate::motion::failure::{Mover, Obstacle};
 use nalgebra::Rotation3;
 
-/// Lower bound of the distance of what is in a ball, in radii of the ball, from which it is exact enough beyond [`PATCH_RANGE`]; with 1
-/// it is half of the distance of the centre. Larger: where two flat sides face each other, thousands of small pieces are looked at.
-/// Smaller: shorter steps. Set by hand: in `make reach` a path beside another bag takes 0.6 of the time.
-const BOUND_PER_RADIUS: f32 = 1.0;
 /// Most halvings of a triangle until it is as small as distances are told.
 const MAX_HALVINGS: usize = 24;
 /// Radius of a piece of a triangle that is not halved any more, metres: its corners tell its distance.
@@ -49,7 +45,9 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
         }
         self.queries += 1;
         let distance = self.body.field.distance(centre) - radius;
-        if distance >= EXACT_UP_TO || distance >= PATCH_RANGE && distance >= radius * BOUND_PER_RADIUS {
+        // Beyond a few millimetres, half of the distance of the centre is exact enough: where two flat sides face each other, thousands
+        // of small pieces would have to be looked at for more.
+        if distance >= EXACT_UP_TO.min(PATCH_RANGE.max(radius)) {
             self.offer(distance, centre, Vector::zeros(), obstacle);
             return None;
         }

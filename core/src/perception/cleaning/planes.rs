@@ -18,7 +18,7 @@ const COARSE: Resolution = Resolution { cell: 0.05, square: 4 };
 const MIN_FILL: f32 = 0.9;
 /// Least share of the places of a plane that have points, of those that would have some if as many points were strewn over it at
 /// random. Larger: planes with noise or small holes count as lattices. Smaller: lattices count as planes: of wires 6 mm thick every
-/// 2 cm, two thirds of the places have wire.
+/// 2 cm, half of the area is wire.
 const MIN_SOLID: f32 = 0.85;
 /// Most points of a cell whose neighbours may be empty by chance: of cells with two points on average a seventh is empty, and
 /// most of the others have no more than this. On a rack of bars they have many.
@@ -100,14 +100,13 @@ pub(super) fn mark(
         if mark_squares(cells, grid.resolution.square) && grid.is_solid(points, cells, meter)? {
             for (step, (flag, point)) in on_plane.iter_mut().zip(points).enumerate() {
                 meter.check_at(step)?;
-                match grid.cell(point) {
-                    Some(cell) if is_in_or_beside_square(cells, cell) => {
-                        // A cell that the rim cuts to a sliver has few points.
-                        let least = cells.get(cell).map_or(0, |own| own / POINT / SLIVER);
-                        let is_inside = around(cells, cell).all(|c| c & OCCUPIED > 0 && c / POINT >= least);
-                        *flag = if is_inside { INSIDE } else { (*flag).max(RIM) };
-                    }
-                    _ => {}
+                if let Some(cell) = grid.cell(point)
+                    && is_in_or_beside_square(cells, cell)
+                {
+                    // A cell that the rim cuts to a sliver has few points.
+                    let least = cells.get(cell).map_or(0, |own| own / POINT / SLIVER);
+                    let is_inside = around(cells, cell).all(|c| c & OCCUPIED > 0 && c / POINT >= least);
+                    *flag = if is_inside { INSIDE } else { (*flag).max(RIM) };
                 }
             }
         }
@@ -131,13 +130,17 @@ impl Grid {
         Self { plane, axes: [ahead, plane.normal.cross(&ahead)], resolution }
     }
 
+    /// Where a point is on the plane, in cells.
+    fn place(&self, point: &Point) -> [f32; 2] {
+        self.axes.map(|axis| (point - self.plane.origin).dot(&axis) / self.resolution.cell)
+    }
+
     /// The cell of a point on the plane.
     fn cell(&self, point: &Point) -> Option<usize> {
         if self.plane.distance(point) >= TOLERANCE {
             return None;
         }
-        let [x, y] =
-            self.axes.map(|axis| libm::floorf((point - self.plane.origin).dot(&axis) / self.resolution.cell));
+        let [x, y] = self.place(point).map(libm::floorf);
         let half = (CELLS / 2) as f32;
         let is_inside = |x: f32| x >= -half && x < half;
         (is_inside(x) && is_inside(y)).then(|| (y + half) as usize * CELLS + (x + half) as usize)
@@ -158,7 +161,7 @@ impl Grid {
 
     /// Whether the plane is more than a lattice of wires: in some of its cells, points are nearly everywhere.
     fn is_solid(&self, points: &[Point], cells: &[u8], meter: &Meter) -> Result<bool, Stop> {
-        let is_inner = |cell: &usize| cells[*cell] & LARGE > 0 && around(cells, *cell).all(|c| c & LARGE > 0);
+        let is_inner = |cell: &usize| around(cells, *cell).all(|c| c & LARGE > 0);
         let inner = (0..cells.len()).filter(is_inner).count();
         let apart = inner.div_ceil(MAX_LOOKED_INTO).max(1);
         // The cells, how many points each has, and in which of its places.
@@ -172,13 +175,11 @@ impl Grid {
             let Ok(index) = looked_into.binary_search_by_key(&cell, |looked_into| looked_into.0) else {
                 continue;
             };
-            let place = self.axes.map(|axis| {
-                let at = (point - self.plane.origin).dot(&axis) / self.resolution.cell;
-                ((at - libm::floorf(at)) * PLACES as f32) as usize % PLACES
-            });
+            let part = |at: f32| ((at - libm::floorf(at)) * PLACES as f32) as usize % PLACES;
+            let [x, y] = self.place(point).map(part);
             let (_, count, places) = &mut looked_into[index];
             *count += 1;
-            *places |= 1 << (place[1] * PLACES + place[0]);
+            *places |= 1 << (y * PLACES + x);
         }
         let all = (PLACES * PLACES) as f32;
         let strewn = |count: u32| all * (1.0 - libm::expf(-(count as f32) / all));
