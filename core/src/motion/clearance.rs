@@ -1,6 +1,7 @@
 //! How far an object is from everything at a pose, as the planner sees it.
 
 use super::error::PlanError;
+use super::exits::box_around;
 use super::path::MAX_CLEARANCE;
 use super::placement::Placement;
 use super::space::{Moving, Obstacles, Space, Workspace};
@@ -28,8 +29,8 @@ impl<'m> Clearance<'m> {
         )
     }
 
-    /// Arranges the obstacles of a task in `memory`, of [`bytes`](Self::bytes), for poses in `region`. At `free` poses the scene is
-    /// out of the way: its points are taken to be so wide that nothing slips through between them, but no wider than these
+    /// Arranges the obstacles of a task in `memory`, of [`bytes`](Self::bytes), for poses at which the centre of mass is in `region`:
+    /// points of the scene that are out of reach from there are left out. At `free` poses the scene is out of the way: its points are taken to be so wide that nothing slips through between them, but no wider than these
     /// poses leave room for.
     pub fn new(
         task: &Task<'m>,
@@ -60,7 +61,7 @@ impl<'m> Clearance<'m> {
     }
 }
 
-/// The object of a task among its obstacles, in what is left of `arena`.
+/// The object of a task among its obstacles, in what is left of `arena`, with its centre in `region`.
 pub(super) fn space_of<'a>(
     task: &Task<'a>,
     region: &Aabb,
@@ -69,9 +70,13 @@ pub(super) fn space_of<'a>(
     meter: &Meter,
 ) -> Result<Space<'a>, PlanError> {
     let body = body_of(task)?;
-    let obstacles = Obstacles::build(task, region, arena, meter)?;
+    let moving = Moving::held(body, task.motion.gripper);
+    // The gripper that leaves turns about its own centre, which moves in a box that is wider by its reach.
+    let of_gripper = task.motion.gripper.map_or(0.0, |gripper| 2.0 * Moving::gripper(gripper).reach);
+    let within_reach = box_around(region, [], moving.reach + of_gripper);
+    let obstacles = Obstacles::build(task, &within_reach, arena, meter)?;
     let workspace = task.motion.workspace.map(|aabb| Workspace::new(aabb, task.object.surface().aabb()));
-    let mut space = Space::of_object(Moving::held(body, task.motion.gripper), obstacles, workspace, arena)?;
+    let mut space = Space::of_object(moving, obstacles, workspace, arena)?;
     space.make_room(free);
     Ok(space)
 }

@@ -21,7 +21,7 @@ use super::task::Task;
 use super::timing::set_times;
 use super::tree::{Metric, Tree};
 use super::written::Written;
-use crate::geometry::{Aabb, Pose, is_rigid};
+use crate::geometry::{Aabb, Pose, Vector, is_rigid};
 use crate::hanging::HangingPose;
 use crate::mechanics::Body;
 use crate::memory::{Arena, Limits, OutOfMemory, larger, model_bytes};
@@ -147,7 +147,8 @@ impl<'a> Planner<'_, 'a, '_> {
         let start = motion.start.map(|start| Placement::of(&start, &body.centre));
         let reach = Moving::held(body, motion.gripper).reach;
         let supporter = self.task.supporter.points().aabb();
-        let ends = start.iter().chain([&release]).map(Placement::centre);
+        let retreat = motion.gripper.map(|gripper| release.centre() + rest.rotation * Vector::from(gripper.retreat));
+        let ends = start.iter().chain([&release]).map(Placement::centre).chain(retreat);
         let region = box_around(&supporter, ends, MARGIN * reach);
 
         let mut arena = arena;

@@ -60,7 +60,7 @@ pub(super) struct Search<'q, 'a, 's> {
     pub(super) trees: &'q mut [Tree<'s>; 2],
     /// The nodes of either tree at which they met last.
     pub(super) met: [usize; 2],
-    /// Box of the positions that are sampled.
+    /// Box of the positions that are sampled, and that the search stays in.
     pub(super) region: Aabb,
     pub(super) goal: Placement,
     pub(super) random: Random,
@@ -298,7 +298,7 @@ impl Search<'_, '_, '_> {
         Ok((leg.scaled(way.share), way.clearance))
     }
 
-    /// Adds a node, unless the tree is full or the caller, who has refused others, refuses it.
+    /// Adds a node, unless it is outside of the region, the tree is full or the caller, who has refused others, refuses it.
     fn add(
         &mut self,
         tree: usize,
@@ -307,7 +307,7 @@ impl Search<'_, '_, '_> {
         clearance: f32,
         permit: &mut Permit,
     ) -> Option<usize> {
-        if permit.is_picky() && !permit.accepts(&placement) {
+        if !self.region.contains(&placement.centre()) || permit.is_picky() && !permit.accepts(&placement) {
             return None;
         }
         self.trees[tree].add(placement, Some(parent), clearance)

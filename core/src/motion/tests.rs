@@ -241,6 +241,24 @@ fn insertions_that_are_possible() {
     }
 }
 
+/// Poses are given by the object's centre: what the rest of the object reaches counts as well.
+#[test]
+fn a_point_of_the_scene_is_seen_as_far_as_the_object_reaches() {
+    let scene = Scene::on_peg();
+    scene.analyse(|object, supporter, params| {
+        let centre = scene.goal * object.centre_of_mass();
+        let region = Aabb { min: centre, max: centre };
+        // In the middle of the ring's lowest part, 15.5 mm below its centre.
+        let points = [[centre.x, centre.y, centre.z - INNER - 0.0015]];
+        let request = Request { scene: &points, ..Request::ANY };
+        let task = Task { object, supporter, request: &request, params, motion: Motion::DEFAULT };
+        let mut memory = vec![0; Clearance::bytes(&supporter.limits(), 1)];
+        let mut clearance = Clearance::new(&task, &region, &[], &mut memory, &Monitor::new()).unwrap();
+        let distance = clearance.at(&scene.goal);
+        assert!(distance < -0.001, "{distance}");
+    });
+}
+
 /// A rest pose that is 2 mm inside the supporter, as it may be where walls are thinner than the distance field resolves.
 #[test]
 fn a_path_ends_where_the_object_is_in_contact() {
