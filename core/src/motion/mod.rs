@@ -17,7 +17,6 @@ mod path;
 mod permit;
 mod placement;
 mod plan;
-mod pull;
 mod reachable;
 mod route;
 mod sample;
