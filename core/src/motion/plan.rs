@@ -147,7 +147,8 @@ impl<'a> Planner<'_, 'a, '_> {
         let start = motion.start.map(|start| Placement::of(&start, &body.centre));
         let reach = Moving::held(body, motion.gripper).reach;
         let supporter = self.task.supporter.points().aabb();
-        let retreat = motion.gripper.map(|gripper| release.centre() + rest.rotation * Vector::from(gripper.retreat));
+        let retreat =
+            motion.gripper.map(|gripper| release.centre() + rest.rotation * Vector::from(gripper.retreat));
         let ends = start.iter().chain([&release]).map(Placement::centre).chain(retreat);
         let region = box_around(&supporter, ends, MARGIN * reach);
 
