@@ -30,8 +30,8 @@ impl<'m> Clearance<'m> {
     }
 
     /// Arranges the obstacles of a task in `memory`, of [`bytes`](Self::bytes), for poses at which the centre of mass is in `region`:
-    /// points of the scene that are out of reach from there are left out. At `free` poses the scene is out of the way: its points are taken to be so wide that nothing slips through between them, but no wider than these
-    /// poses leave room for.
+    /// points of the scene that are out of reach from there are left out. At `free` poses the scene is out of the way: its points are
+    /// taken to be so wide that nothing slips through between them, but no wider than these poses leave room for.
     pub fn new(
         task: &Task<'m>,
         region: &Aabb,
