@@ -77,7 +77,8 @@ pub(crate) fn push_off_surface(
     Ok(None)
 }
 
-/// Whether a point of the supporter is deeper than `depth` metres inside the mesh at `pose`, exactly.
+/// Whether a point of the supporter is deeper than `depth` metres inside the mesh at `pose`, exactly. Points between those of the
+/// cloud are tested as well: a string of a racquet may be thinner than what is between them.
 pub(crate) fn is_deeper(
     (body, support): (&Body, &Support),
     pose: &Pose,
@@ -93,17 +94,24 @@ pub(crate) fn is_deeper(
         let aabb = node.aabb();
         let (centre, radius) = (to_object * aabb.centre(), 0.5 * aabb.diagonal());
         queries += 1;
-        if found || body.is_beyond(&centre, radius) || field.distance(&centre) > radius + near {
+        // The field may miss thin parts.
+        let is_far = || field.distance(&centre) > radius + near && !surface.is_within(&centre, radius);
+        if found || body.is_beyond(&centre, radius) || is_far() {
             return false;
         }
-        let Some(points) = node.items().and_then(|items| support.tree.points().get(items)) else {
-            return true;
-        };
-        queries += points.len();
-        found = points.iter().any(|point| {
+        let Some(items) = node.items() else { return true };
+        let mut is_deep = |point: &Point| {
+            queries += 1;
             let at = to_object * point;
-            field.distance(&at) < near && surface.signed_distance(&at) < -depth
-        });
+            surface.signed_distance(&at) < -depth
+        };
+        found = support.tree.points().get(items.clone()).unwrap_or_default().iter().any(&mut is_deep)
+            || support.patches_of(&items).any(|patch| {
+                let position = support.position(patch);
+                support.patches.get(patch).is_some_and(|of_it| {
+                    of_it.half_way_out().any(|offset| is_deep(&(position + offset)))
+                })
+            });
         true
     });
     meter.distance_queries(queries)?;

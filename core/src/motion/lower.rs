@@ -9,8 +9,13 @@ use crate::monitor::{Meter, Stop};
 /// distance field, whose error in thin walls is that of a voxel; a robot that goes on to such a pose presses. More than the depth at
 /// which the mechanics corrects no penetration, 0.1 mm; less than the millimetre that a path may be off.
 const DEEPEST: f32 = 0.0003;
-/// Halvings of the way down: of a centimetre, to less than a tenth of a millimetre.
-const HALVINGS: usize = 7;
+/// Largest travel between two poses that are tested, metres, as long as [`MAX_STEPS`] allow it: a wire that is thinner than this is
+/// not missed between a pose above the surface and one that is below it altogether.
+const STEP: f32 = 0.0005;
+/// Most steps of the way down.
+const MAX_STEPS: usize = 64;
+/// Halvings of the last step: to a hundredth of a millimetre.
+const HALVINGS: usize = 5;
 
 /// The part of `lowering`, the way from the release pose to the rest pose, at the end of which the object is in contact.
 pub(super) fn until_contact(
@@ -24,13 +29,17 @@ pub(super) fn until_contact(
         let pose = release.after(&lowering, share).pose(&space.moving.centre);
         is_deeper((body, space.obstacles.support), &pose, DEEPEST, meter)
     };
-    if !is_deep(1.0)? {
-        return Ok(lowering);
+    let steps = (libm::ceilf(lowering.travel(space.moving.reach) / STEP) as usize).clamp(1, MAX_STEPS);
+    for step in 1..=steps {
+        let (mut free, mut deep) = ((step - 1) as f32 / steps as f32, step as f32 / steps as f32);
+        if !is_deep(deep)? {
+            continue;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (free + deep);
+            if is_deep(middle)? { deep = middle } else { free = middle }
+        }
+        return Ok(lowering.scaled(free));
     }
-    let (mut free, mut deep) = (0.0, 1.0);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (free + deep);
-        if is_deep(middle)? { deep = middle } else { free = middle }
-    }
-    Ok(lowering.scaled(free))
+    Ok(lowering)
 }
