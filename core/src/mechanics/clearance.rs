@@ -94,23 +94,27 @@ pub(crate) fn is_deeper(
         let aabb = node.aabb();
         let (centre, radius) = (to_object * aabb.centre(), 0.5 * aabb.diagonal());
         queries += 1;
+        if found || body.is_beyond(&centre, radius) {
+            return false;
+        }
         // The field may miss thin parts.
-        let is_far = || field.distance(&centre) > radius + near && !surface.is_within(&centre, radius);
-        if found || body.is_beyond(&centre, radius) || is_far() {
+        let is_missed = field.distance(&centre) > radius + near;
+        if is_missed && !surface.is_within(&centre, radius) {
             return false;
         }
         let Some(items) = node.items() else { return true };
         let mut is_deep = |point: &Point| {
             queries += 1;
             let at = to_object * point;
-            surface.signed_distance(&at) < -depth
+            (is_missed || field.distance(&at) < near) && surface.signed_distance(&at) < -depth
         };
         found = support.tree.points().get(items.clone()).unwrap_or_default().iter().any(&mut is_deep)
             || support.patches_of(&items).any(|patch| {
                 let position = support.position(patch);
-                support.patches.get(patch).is_some_and(|of_it| {
-                    of_it.half_way_out().any(|offset| is_deep(&(position + offset)))
-                })
+                support
+                    .patches
+                    .get(patch)
+                    .is_some_and(|of_it| of_it.half_way_out().any(|offset| is_deep(&(position + offset))))
             });
         true
     });

@@ -41,7 +41,7 @@ pub(crate) use neighbourhood::Sleep;
 pub(crate) use obstacles::{is_clear_of_points, is_clear_of_surface};
 pub(crate) use release::release_pose;
 pub use settle::Fate;
-pub(crate) use settle::{Settled, comes_free, settle, settle_watched, swing_out};
+pub(crate) use settle::{Pull, Settled, comes_free, pulled, settle, settle_watched, swing_out};
 pub(crate) use support::{Room, Support};
 pub use unseen::Unseen;
 pub(crate) use unseen::{Views, unseen};

@@ -19,6 +19,8 @@ pub(crate) struct Settings {
     pub(crate) drag: f32,
     /// Damping rate of the rotation while there is contact, 1/s.
     pub(crate) spin_drag: f32,
+    /// Gap that contacts keep, metres: nothing for what rests.
+    pub(crate) gap: f32,
     /// [`Params::time_step`], s.
     pub(crate) time_step: f32,
     /// [`Params::settle_time`], s.
@@ -44,9 +46,14 @@ impl Settings {
         Self::new(params, 0.0, 0.0)
     }
 
+    /// Strong damping and no friction, at a distance from the supporter, for what is pulled off.
+    pub(super) fn pulled(params: &Params, gap: f32) -> Self {
+        Self { friction: 0.0, gap, ..Self::damped(params) }
+    }
+
     fn new(params: &Params, drag: f32, spin_drag: f32) -> Self {
         let &Params { friction, time_step, settle_time, rest_speed, .. } = params;
-        Self { friction, drag, spin_drag, time_step, settle_time, rest_speed }
+        Self { friction, drag, spin_drag, gap: 0.0, time_step, settle_time, rest_speed }
     }
 
     /// Number of time steps in `seconds`, rounded.
@@ -57,7 +64,7 @@ impl Settings {
     /// Gap below which a contact at rest is kept, metres: [`CONTACT_MARGIN`], and the distance that gravity closes
     /// in the two steps for which contacts are used, `g (2 dt)² / 2`.
     fn contact_margin(&self) -> f32 {
-        CONTACT_MARGIN + 2.0 * self.time_step * self.time_step * GRAVITY
+        CONTACT_MARGIN + self.gap + 2.0 * self.time_step * self.time_step * GRAVITY
     }
 }
 
@@ -97,22 +104,23 @@ impl<'a, 's> Motion<'a, 's> {
     /// Advances by one time step with semi-implicit Euler; `gravity` is in m/s². The gyroscopic term is left
     /// out: a body that spins fast enough for it to matter does not hang.
     pub(crate) fn step(&mut self, gravity: &Vector, meter: &mut Meter) -> Result<(), Stop> {
-        let Settings { friction, drag, spin_drag, time_step: dt, .. } = self.settings;
+        let Settings { friction, drag, spin_drag, gap, time_step: dt, .. } = self.settings;
         let (body, state) = (self.body, &mut self.state);
         let scene = (body, self.support);
         let margin = self.settings.contact_margin();
         self.neighbourhood.update(&mut self.contacts, scene, state, (margin, dt), meter)?;
         state.velocity += gravity * dt;
         let inverse_inertia = body.inverse_inertia_in(state);
-        self.impulses = solver::solve(state, &inverse_inertia, &self.contacts, &self.impulses, friction, dt);
+        self.impulses =
+            solver::solve(state, &inverse_inertia, &self.contacts, &self.impulses, (friction, gap), dt);
         self.touches = self.impulses.iter().any(|impulse| impulse.normal > 0.0);
         if self.touches {
             state.velocity *= 1.0 / (1.0 + drag * dt);
             state.spin *= 1.0 / (1.0 + spin_drag * dt);
         }
         let (mut shift, mut turn) = (state.velocity * dt, state.spin * dt);
-        if self.contacts.iter().any(|contact| contact.gap < 0.0) {
-            let (shift_out, turn_out) = solver::separate(state, &inverse_inertia, &self.contacts, 0.0);
+        if self.contacts.iter().any(|contact| contact.gap < gap) {
+            let (shift_out, turn_out) = solver::separate(state, &inverse_inertia, &self.contacts, gap);
             shift += shift_out;
             turn += turn_out;
         }

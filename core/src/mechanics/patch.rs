@@ -167,11 +167,13 @@ impl Patch {
     pub(super) fn half_way_out(&self) -> impl Iterator<Item = Vector> {
         let sides = if self.is_wire() { 2 } else { 4 };
         let [along, across, normal] = self.axes();
-        [[0.5, 0.0], [-0.5, 0.0], [0.0, 0.5], [0.0, -0.5]].into_iter().take(sides).map(move |[x, y]: [f32; 2]| {
-            let offset = [x * self.extents[0], y * self.extents[1]];
-            let depth = if self.is_wire() { 0.0 } else { self.depth(offset) };
-            along * offset[0] + across * offset[1] - normal * depth
-        })
+        [[0.5, 0.0], [-0.5, 0.0], [0.0, 0.5], [0.0, -0.5]].into_iter().take(sides).map(
+            move |[x, y]: [f32; 2]| {
+                let offset = [x * self.extents[0], y * self.extents[1]];
+                let depth = if self.is_wire() { 0.0 } else { self.depth(offset) };
+                along * offset[0] + across * offset[1] - normal * depth
+            },
+        )
     }
 
     /// Whether the patch is longer than those of a dense cloud, so that its middle tells little of its ends.

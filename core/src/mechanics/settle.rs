@@ -8,7 +8,7 @@ use super::constants::{
 use super::motion::{Motion, Settings};
 use super::neighbourhood::Sleep;
 use super::{Body, Support};
-use crate::geometry::{Pose, Vector};
+use crate::geometry::{Point, Pose, Vector};
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
 
@@ -136,4 +136,47 @@ pub(crate) fn comes_free(
         }
     }
     Ok(false)
+}
+
+/// Time for which a body is pulled at most, s: without contact it moves 8 cm in it, farther than a pull leads.
+const PULL_TIME: f32 = 0.128;
+
+/// How a body is pulled, in supporter coordinates but for the point.
+pub(crate) struct Pull {
+    /// Unit vector.
+    pub(crate) direction: Vector,
+    /// The point at which it is pulled, in object coordinates; by default the centre of mass.
+    pub(crate) at: Option<Point>,
+    /// Travel after which the pull ends, metres.
+    pub(crate) travel: f32,
+    /// Distance that it keeps from the supporter, metres.
+    pub(crate) gap: f32,
+}
+
+/// Where the body is after it has been pulled from rest, with an acceleration of 1 g and without friction. What is in its way turns
+/// it and leads it aside.
+pub(crate) fn pulled(
+    (body, support): (&Body, &Support),
+    from: &Pose,
+    pull: &Pull,
+    params: &Params,
+    sleeps: &mut [Sleep],
+    meter: &mut Meter,
+) -> Result<Pose, Stop> {
+    let settings = Settings::pulled(params, pull.gap);
+    let start = body.at(from);
+    let force = pull.direction * GRAVITY;
+    let mut motion = Motion::new((body, support), start, settings, sleeps);
+    for _ in 0..settings.steps(PULL_TIME) {
+        if let Some(at) = &pull.at {
+            let arm: Vector = motion.state.rotation * (at - body.centre);
+            let twist = body.inverse_inertia_in(&motion.state) * arm.cross(&force);
+            motion.state.spin += twist * settings.time_step;
+        }
+        motion.step(&force, meter)?;
+        if body.travel(&start, &motion.state) > pull.travel {
+            break;
+        }
+    }
+    Ok(body.pose(&motion.state))
 }

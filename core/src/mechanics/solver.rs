@@ -47,7 +47,7 @@ pub(crate) fn solve(
     inverse_inertia: &Matrix3<f32>,
     contacts: &Contacts,
     before: &Impulses,
-    friction: f32,
+    (friction, gap): (f32, f32),
     dt: f32,
 ) -> Impulses {
     let mut rows = Vec::<Row, MAX_SOLVER_CONTACTS>::new();
@@ -62,7 +62,7 @@ pub(crate) fn solve(
         let warm = before.iter().find(|i| i.index == contact.index);
         let impulse =
             warm.map_or([0.0; 3], |i| [i.normal, i.friction.dot(&tangents[0]), i.friction.dot(&tangents[1])]);
-        let bound = -contact.gap.max(0.0) / dt;
+        let bound = -(contact.gap - gap).max(0.0) / dt;
         for k in 0..3 {
             state.velocity += directions[k] * impulse[k];
             state.spin += twist[k] * impulse[k];

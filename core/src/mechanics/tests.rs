@@ -533,6 +533,32 @@ fn a_ring_slides_along_the_rod_beyond_the_friction_angle() {
     });
 }
 
+/// The pull is 10 degrees off the rod, which leads the ring.
+#[test]
+fn a_ring_is_pulled_along_the_rod_and_keeps_its_distance() {
+    Scene::new(ring(), rod(Vector::x(), 0.3, 0.005)).try_out(|lab| {
+        let direction = -tilted(80.0, -Vector::x());
+        let pull = Pull { direction, at: None, travel: 0.02, gap: 0.0005 };
+        let (monitor, scene) = (Monitor::new(), (&lab.body, &lab.support));
+        let mut meter = Meter::new(&monitor);
+        // Pulled up, it comes against the rod from below.
+        let low = at(0.0, 0.0, -0.02) * on_rod();
+        let lifted = Pull { direction: -DOWN, travel: 0.1, ..pull };
+        let start =
+            pulled(scene, &low, &lifted, &with_friction(FRICTION), &mut lab.sleeps, &mut meter).unwrap();
+        let end =
+            pulled(scene, &start, &pull, &with_friction(FRICTION), &mut lab.sleeps, &mut meter).unwrap();
+        let moved = end * lab.body.centre - start * lab.body.centre;
+        assert!(moved.x > 0.012 && moved.y.abs() < 0.001, "{moved}");
+        for pose in [start, end] {
+            let mut gaps =
+                lab.support.positions().map(|point| lab.body.field.distance(&(pose.inverse() * point)));
+            let least = gaps.next().map(|first| gaps.fold(first, f32::min)).unwrap();
+            assert!(least > 0.0002, "{least}");
+        }
+    });
+}
+
 #[test]
 fn a_rod_lies_at_the_bottom_of_a_v() {
     let wall = |degrees: f32| {

@@ -17,6 +17,7 @@ mod path;
 mod permit;
 mod placement;
 mod plan;
+mod pull;
 mod reachable;
 mod route;
 mod sample;

@@ -3,16 +3,17 @@
 //! One tree grows from the goal, the other from one or more starts. The last centimetres along a hook are the hard part. So a
 //! branch that is blocked does not end, but turns aside along what blocks it, as a hand feels its way out.
 
-use super::failure::Obstacle;
 use super::permit::Permit;
 use super::placement::{Leg, Placement};
 use super::route::Route;
 use super::slide::aside;
-use super::space::{Space, Touches};
+use super::space::Space;
 use super::tree::Tree;
 use crate::geometry::{Aabb, Vector};
 use crate::hanging::Distance;
+use crate::mechanics::Sleep;
 use crate::monitor::{Meter, Stop};
+use crate::params::Params;
 use crate::random::Random;
 use heapless::Vec;
 
@@ -24,16 +25,16 @@ pub(super) const START: usize = 1;
 // How branches grow. Set by hand.
 
 /// Travel below which a branch has not moved, metres.
-const LEAST_TRAVEL: f32 = 0.0005;
+pub(super) const LEAST_TRAVEL: f32 = 0.0005;
 /// Travel of a step aside, as a share of the reach of what moves.
 const STRIDE: f32 = 0.1;
 /// Steps aside of one branch.
 const STEPS_ASIDE: usize = 16;
 /// Required distance that a step aside aims at, as a multiple of the one that is tested: the step is exact to first order only.
-const ASIDE_EXCESS: f32 = 1.3;
+pub(super) const ASIDE_EXCESS: f32 = 1.3;
 
 /// Least travel of a step aside when an object is dragged, metres.
-const LEAST_STRIDE: f32 = 0.002;
+pub(super) const LEAST_STRIDE: f32 = 0.002;
 /// Steps of one drag, after which the way out is tried.
 const DRAG_STEPS: usize = 8;
 /// Drags along the bar from the goal.
@@ -45,11 +46,11 @@ const SHORTER: f32 = 0.25;
 /// Share of its rotation with which a dragged object goes on.
 const SPIN: f32 = 0.5;
 /// Distance from the object within which a bar carries it, metres.
-const BAR_RANGE: f32 = 0.003;
+pub(super) const BAR_RANGE: f32 = 0.003;
 /// Cosine between the directions of bars that are one.
-const SAME_BAR: f32 = 0.9;
+pub(super) const SAME_BAR: f32 = 0.9;
 /// Bars along which the object is dragged from the goal.
-const MAX_BARS: usize = 4;
+pub(super) const MAX_BARS: usize = 4;
 
 /// A search for a way between a goal and one of several starts.
 pub(super) struct Search<'q, 'a, 's> {
@@ -64,6 +65,9 @@ pub(super) struct Search<'q, 'a, 's> {
     pub(super) region: Aabb,
     pub(super) goal: Placement,
     pub(super) random: Random,
+    pub(super) params: &'q Params,
+    /// Working memory of the simulation of what is pulled.
+    pub(super) sleeps: &'q mut [Sleep],
     /// Poses sampled.
     pub(super) sampled: usize,
     /// Poses that may be sampled, all in all: shown as progress.
@@ -109,7 +113,8 @@ impl Search<'_, '_, '_> {
             // Two of three samples are for the tree of the goal, which is the one in narrow places.
             let grown = if index % 3 == 2 { START } else { GOAL };
             let node = match index % 3 {
-                0 => self.drag_towards(&target, permit, meter)?,
+                0 if index.is_multiple_of(2) => self.drag_towards(&target, permit, meter)?,
+                0 => self.pull_towards(&target, permit, meter)?,
                 _ => self.grow(grown, &target, permit, meter)?.map(|(node, _)| node),
             };
             if let Some(node) = node
@@ -121,7 +126,7 @@ impl Search<'_, '_, '_> {
         Ok(Outcome::UsedUp)
     }
 
-    /// Tries what most often works: straight to a start, and along the bar on which the object hangs, both ways.
+    /// Tries what most often works: straight to a start, and along the bar on which the object hangs, both ways; last, pulled.
     fn leave_goal(
         &mut self,
         route: &mut Route,
@@ -158,17 +163,13 @@ impl Search<'_, '_, '_> {
                 }
             }
         }
-        Ok(false)
+        self.pull_off(route, permit, meter)
     }
 
-    /// Directions of the bars that the object is near at the goal.
+    /// Directions of the bars that the object is near at the goal, one of each.
     fn bars(&mut self, meter: &mut Meter) -> Result<Vec<Vector, MAX_BARS>, Stop> {
-        let mut touches = Touches::within(BAR_RANGE);
-        let goal = self.goal;
-        self.space.collect(&goal, &mut touches, meter)?;
         let mut bars = Vec::<Vector, MAX_BARS>::new();
-        for touch in touches.list.iter().filter(|touch| touch.obstacle == Obstacle::Supporter) {
-            let Some(bar) = self.space.obstacles.support.bar_near(&touch.at, &touch.normal) else { continue };
+        for &(bar, _) in &self.bars_at(0, BAR_RANGE, meter)? {
             if bars.iter().all(|other| other.dot(&bar).abs() < SAME_BAR) {
                 let _ = bars.push(bar);
             }
@@ -177,7 +178,7 @@ impl Search<'_, '_, '_> {
     }
 
     /// Connects the other tree to a new node. Returns whether that gives a route, which it writes, that the caller accepts.
-    fn meets(
+    pub(super) fn meets(
         &mut self,
         grown: usize,
         node: usize,
@@ -213,6 +214,17 @@ impl Search<'_, '_, '_> {
         meter: &mut Meter,
     ) -> Result<Option<(usize, bool)>, Stop> {
         let Some(root) = self.trees[tree].nearest(target) else { return Ok(None) };
+        self.grow_from((tree, root), target, permit, meter)
+    }
+
+    /// The same from a given node of the tree.
+    pub(super) fn grow_from(
+        &mut self,
+        (tree, root): (usize, usize),
+        target: &Placement,
+        permit: &mut Permit,
+        meter: &mut Meter,
+    ) -> Result<Option<(usize, bool)>, Stop> {
         let reach = self.space.moving.reach;
         let mut at = root;
         for _ in 0..STEPS_ASIDE {
