@@ -23,10 +23,9 @@ use super::tree::{Metric, Tree};
 use super::written::Written;
 use crate::geometry::{Aabb, Pose, Vector, is_rigid};
 use crate::hanging::HangingPose;
-use crate::mechanics::{Body, Sleep, Support};
-use crate::memory::{Arena, Limits, OutOfMemory, array_bytes, larger, model_bytes};
+use crate::mechanics::Body;
+use crate::memory::{Arena, Limits, OutOfMemory, larger, model_bytes};
 use crate::monitor::{Meter, Monitor};
-use crate::perception::far_side;
 use crate::random::Random;
 
 /// Distance from obstacles, metres, below which a release pose or a start is in collision: less than the least gap of a release
@@ -47,7 +46,7 @@ const MARGIN: f32 = 1.5;
 /// Bytes of working memory for [`plan`]: a supporter within `limits`, `scene` points of a scene and trees of `nodes`.
 pub const fn plan_bytes(limits: &Limits, scene: usize, nodes: usize) -> usize {
     let search = Space::bytes(limits.points)
-        .saturating_add(Room::bytes(nodes, limits.points))
+        .saturating_add(Room::bytes(nodes))
         .saturating_add(enclosed::bytes(limits.points));
     let scratch = larger(Obstacles::scratch_bytes(limits.points, scene), search);
     model_bytes(Obstacles::bytes(limits.points, scene).saturating_add(scratch))
@@ -109,14 +108,11 @@ struct Room<'s> {
     found: Route<'s>,
     /// Shortened.
     short: Route<'s>,
-    sleeps: &'s mut [Sleep],
 }
 
 impl<'s> Room<'s> {
-    const fn bytes(nodes: usize, points: usize) -> usize {
-        array_bytes::<Sleep>(Support::sleepers(far_side::max_points(points))).saturating_add(
-            Tree::bytes(nodes).saturating_add(Route::bytes(nodes.saturating_mul(2))).saturating_mul(2),
-        )
+    const fn bytes(nodes: usize) -> usize {
+        Tree::bytes(nodes).saturating_add(Route::bytes(nodes.saturating_mul(2))).saturating_mul(2)
     }
 
     /// Empty, and with another metric.
@@ -124,14 +120,9 @@ impl<'s> Room<'s> {
         self.trees.iter_mut().for_each(|tree| tree.clear(metric));
     }
 
-    fn new(nodes: usize, patches: usize, arena: &mut Arena<'s>) -> Result<Self, OutOfMemory> {
+    fn new(nodes: usize, arena: &mut Arena<'s>) -> Result<Self, OutOfMemory> {
         let trees = [Tree::new(nodes, arena)?, Tree::new(nodes, arena)?];
-        Ok(Self {
-            trees,
-            found: Route::new(2 * nodes, arena)?,
-            short: Route::new(2 * nodes, arena)?,
-            sleeps: arena.unset(Support::sleepers(patches))?,
-        })
+        Ok(Self { trees, found: Route::new(2 * nodes, arena)?, short: Route::new(2 * nodes, arena)? })
     }
 }
 
@@ -164,7 +155,7 @@ impl<'a> Planner<'_, 'a, '_> {
         let mut arena = arena;
         let free = [goal.pose, motion.start.unwrap_or(goal.pose)];
         let mut space = space_of(self.task, &region, &free, &mut arena, self.meter)?;
-        let mut room = Room::new(motion.nodes, self.task.supporter.support().patches.len(), &mut arena)?;
+        let mut room = Room::new(motion.nodes, &mut arena)?;
 
         let clearance = self.way_of_object(
             &mut space,
@@ -263,7 +254,8 @@ impl<'a> Planner<'_, 'a, '_> {
         permit: &mut Permit,
     ) -> Result<f32, End> {
         let (motion, nodes) = (&self.task.motion, self.counts.nodes);
-        let Room { trees, found, short, sleeps } = room;
+        let Room { trees, found, short } = room;
+        let mut may_prove = scratch.is_some();
         let mut search = Search {
             space,
             required,
@@ -272,17 +264,16 @@ impl<'a> Planner<'_, 'a, '_> {
             goal: *goal,
             random: Random::new(motion.seed),
             params: self.task.params,
-            sleeps,
+            scratch: scratch.map(Arena::scratch),
             met: [0; 2],
             sampled: 0,
             budget: motion.samples,
             has_left: false,
             step: motion.step,
         };
-        let mut scratch = scratch;
         loop {
             // The proof that there is no way costs as much as many samples, and most ways are found with few.
-            let most = if scratch.is_some() { SAMPLES_BEFORE_PROOF } else { usize::MAX };
+            let most = if may_prove { SAMPLES_BEFORE_PROOF } else { usize::MAX };
             let before = search.sampled;
             let outcome = search.run((motion.samples - before).min(most), found, permit, self.meter);
             self.counts.samples += search.sampled - before;
@@ -291,7 +282,8 @@ impl<'a> Planner<'_, 'a, '_> {
                 Outcome::Found => {}
                 Outcome::Full => return Err(PlanFailure::TreesFull { nodes: motion.nodes }.into()),
                 Outcome::UsedUp => {
-                    if let Some(scratch) = scratch.take()
+                    if core::mem::take(&mut may_prove)
+                        && let Some(scratch) = &mut search.scratch
                         && let Some(resolution) = enclosed::link(search.space, goal, scratch, self.meter)?
                     {
                         return Err(PlanFailure::Enclosed { resolution }.into());

@@ -3,13 +3,14 @@
 //! The steps of [`drag`](Search::drag) turn the object by itself, to first order. A narrow hole on a bent bar jams then; in the
 //! simulation it follows the bar.
 
+use super::enclosed;
 use super::permit::Permit;
 use super::placement::Placement;
 use super::route::Route;
 use super::search::{ASIDE_EXCESS, BAR_RANGE, GOAL, LEAST_STRIDE, LEAST_TRAVEL, MAX_BARS, SAME_BAR, Search};
 use super::space::Touches;
 use crate::geometry::{Point, Vector, fibonacci_direction, unit_or};
-use crate::mechanics::{Pull, pulled};
+use crate::mechanics::{Pull, Sleep, Support, pulled};
 use crate::monitor::{Meter, Stop};
 use crate::motion::failure::Obstacle;
 use heapless::Vec;
@@ -32,6 +33,9 @@ const ALONG_BAR: usize = 64;
 const UNTIL_TRIED: usize = 8;
 /// Distance from the object within which a bar leads it, metres: it is pulled with a little more than the required distance.
 const LEADING_RANGE: f32 = 2.0 * BAR_RANGE;
+/// Most patches and groups of a supporter off which the object is pulled: their sleeps take the memory of the proof that there is no
+/// way, which is not needed at the same time. So many patches cover half a square metre.
+const MAX_SLEEPERS: usize = enclosed::bytes(0) / size_of::<Sleep>();
 
 impl Search<'_, '_, '_> {
     /// Pulls the object from the goal along the bars that it is near there, both ways, then in all directions. Returns whether that
@@ -133,12 +137,17 @@ impl Search<'_, '_, '_> {
         meter: &mut Meter,
     ) -> Result<Option<usize>, Stop> {
         let moving = self.space.moving;
-        let Some(body) = moving.body else { return Ok(None) };
+        let support = self.space.obstacles.support;
+        let sleepers = Support::sleepers(support.patches.len());
+        let (Some(body), Some(scratch)) = (moving.body, &mut self.scratch) else { return Ok(None) };
+        let mut arena = scratch.scratch();
+        let Some(sleeps) = arena.unset(sleepers).ok().filter(|sleeps| sleeps.len() <= MAX_SLEEPERS) else {
+            return Ok(None);
+        };
         let place = self.trees[GOAL].placement(from);
         let stride = (STRIDE * moving.reach).max(LEAST_STRIDE);
         let pull = Pull { direction, at, travel: stride, gap: ASIDE_EXCESS * self.required };
-        let scene = (&body, self.space.obstacles.support);
-        let pose = pulled(scene, &place.pose(&moving.centre), &pull, self.params, self.sleeps, meter)?;
+        let pose = pulled((&body, support), &place.pose(&moving.centre), &pull, self.params, sleeps, meter)?;
         let target = Placement::of(&pose, &moving.centre);
         if place.leg_to(&target).travel(moving.reach) < LEAST_TRAVEL {
             return Ok(None);

@@ -11,7 +11,7 @@ use super::space::Space;
 use super::tree::Tree;
 use crate::geometry::{Aabb, Vector};
 use crate::hanging::Distance;
-use crate::mechanics::Sleep;
+use crate::memory::Arena;
 use crate::monitor::{Meter, Stop};
 use crate::params::Params;
 use crate::random::Random;
@@ -66,8 +66,9 @@ pub(super) struct Search<'q, 'a, 's> {
     pub(super) goal: Placement,
     pub(super) random: Random,
     pub(super) params: &'q Params,
-    /// Working memory of the simulation of what is pulled.
-    pub(super) sleeps: &'q mut [Sleep],
+    /// Working memory of the object's search, [`enclosed::bytes`](super::enclosed::bytes) of it: for pulls and for the proof that
+    /// there is no way.
+    pub(super) scratch: Option<Arena<'q>>,
     /// Poses sampled.
     pub(super) sampled: usize,
     /// Poses that may be sampled, all in all: shown as progress.
