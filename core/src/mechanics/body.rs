@@ -66,6 +66,16 @@ impl Body<'_> {
         (point - self.centre).norm_squared() > limit * limit
     }
 
+    /// The same shape with its mass around a point in object coordinates, with a radius of gyration in metres.
+    pub(crate) fn with_mass_at(&self, centre: Point, radius: f32) -> Self {
+        Self {
+            centre,
+            inverse_inertia: Matrix3::identity() / (radius * radius),
+            reach: self.reach + (centre - self.centre).norm(),
+            ..*self
+        }
+    }
+
     /// Upper bound of the displacement of any point of the body between two states, metres.
     pub(crate) fn travel(&self, from: &State, to: &State) -> f32 {
         (to.centre - from.centre).norm() + from.rotation.angle_to(&to.rotation) * self.reach

@@ -138,23 +138,28 @@ pub(crate) fn comes_free(
     Ok(false)
 }
 
-/// Time for which a body is pulled at most, s: without contact it moves 8 cm in it, farther than a pull leads.
-const PULL_TIME: f32 = 0.128;
+/// Time steps of a pull without contact; what is held back is pulled for twice as long.
+const PULL_STEPS: u16 = 10;
+/// Radius of gyration about the point at which a body is pulled, metres. The rim of a hole is about as far from that point: so what
+/// the body is threaded on turns it easily, however long it is.
+const PULLED_RADIUS: f32 = 0.01;
+/// Travel of the farthest point of a body that is pulled at another point, in multiples of the travel asked for, after which the pull
+/// ends: it does not turn far between two poses.
+const MOST_TURNED: f32 = 4.0;
 
 /// How a body is pulled, in supporter coordinates but for the point.
 pub(crate) struct Pull {
     /// Unit vector.
     pub(crate) direction: Vector,
-    /// The point at which it is pulled, in object coordinates; by default the centre of mass.
+    /// The point at which it is pulled, in object coordinates, as if its mass were near to it; by default the centre of mass.
     pub(crate) at: Option<Point>,
-    /// Travel after which the pull ends, metres.
+    /// Travel after which the pull ends, metres: of that point, or of the farthest one of the body.
     pub(crate) travel: f32,
     /// Distance that it keeps from the supporter, metres.
     pub(crate) gap: f32,
 }
 
-/// Where the body is after it has been pulled from rest, with an acceleration of 1 g and without friction. What is in its way turns
-/// it and leads it aside.
+/// Where the body is after it has been pulled from rest, without friction. What is in its way turns it and leads it aside.
 pub(crate) fn pulled(
     (body, support): (&Body, &Support),
     from: &Pose,
@@ -164,17 +169,17 @@ pub(crate) fn pulled(
     meter: &mut Meter,
 ) -> Result<Pose, Stop> {
     let settings = Settings::pulled(params, pull.gap);
+    let body = &pull.at.map_or(*body, |at| body.with_mass_at(at, PULLED_RADIUS));
     let start = body.at(from);
-    let force = pull.direction * GRAVITY;
+    let seconds = f32::from(PULL_STEPS) * settings.time_step;
+    let acceleration = pull.direction * (2.0 * pull.travel / (seconds * seconds));
     let mut motion = Motion::new((body, support), start, settings, sleeps);
-    for _ in 0..settings.steps(PULL_TIME) {
-        if let Some(at) = &pull.at {
-            let arm: Vector = motion.state.rotation * (at - body.centre);
-            let twist = body.inverse_inertia_in(&motion.state) * arm.cross(&force);
-            motion.state.spin += twist * settings.time_step;
-        }
-        motion.step(&force, meter)?;
-        if body.travel(&start, &motion.state) > pull.travel {
+    for _ in 0..2 * PULL_STEPS {
+        motion.step(&acceleration, meter)?;
+        let (of_point, of_all) =
+            ((motion.state.centre - start.centre).norm(), body.travel(&start, &motion.state));
+        let most = if pull.at.is_some() { MOST_TURNED * pull.travel } else { pull.travel };
+        if of_point > pull.travel || of_all > most {
             break;
         }
     }

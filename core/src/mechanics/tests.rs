@@ -543,7 +543,7 @@ fn a_ring_is_pulled_along_the_rod_and_keeps_its_distance() {
         let mut meter = Meter::new(&monitor);
         // Pulled up, it comes against the rod from below.
         let low = at(0.0, 0.0, -0.02) * on_rod();
-        let lifted = Pull { direction: -DOWN, travel: 0.1, ..pull };
+        let lifted = Pull { direction: -DOWN, travel: 0.025, ..pull };
         let start =
             pulled(scene, &low, &lifted, &with_friction(FRICTION), &mut lab.sleeps, &mut meter).unwrap();
         let end =

@@ -63,6 +63,10 @@ impl Placement {
 }
 
 impl Leg {
+    /// Stays where it is.
+    pub(super) const NONE: Self =
+        Self { shift: Vector::new(0.0, 0.0, 0.0), turn: Vector::new(0.0, 0.0, 0.0) };
+
     /// Upper bound of the displacement of any point within `reach` of the centre, metres.
     pub(super) fn travel(&self, reach: f32) -> f32 {
         self.shift.norm() + self.turn.norm() * reach

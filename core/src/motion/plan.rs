@@ -13,6 +13,7 @@ use super::lower::until_contact;
 use super::path::{MAX_CLEARANCE, Outline, Plan, PlanCounts, Shape, Waypoint};
 use super::permit::Permit;
 use super::placement::Placement;
+use super::pull::Ends;
 use super::route::Route;
 use super::search::{GOAL, Outcome, START, Search};
 use super::shorten::shorten;
@@ -266,6 +267,7 @@ impl<'a> Planner<'_, 'a, '_> {
             params: self.task.params,
             scratch: scratch.map(Arena::scratch),
             met: [0; 2],
+            ends: Ends::new(),
             sampled: 0,
             budget: motion.samples,
             has_left: false,

@@ -4,29 +4,32 @@
 //! simulation it follows the bar.
 
 use super::enclosed;
+use super::failure::Obstacle;
 use super::permit::Permit;
-use super::placement::Placement;
+use super::placement::{Leg, Placement};
 use super::route::Route;
 use super::search::{ASIDE_EXCESS, BAR_RANGE, GOAL, LEAST_STRIDE, LEAST_TRAVEL, MAX_BARS, SAME_BAR, Search};
+use super::slide::aside;
 use super::space::Touches;
 use crate::geometry::{Point, Vector, fibonacci_direction, unit_or};
 use crate::mechanics::{Pull, Sleep, Support, pulled};
 use crate::monitor::{Meter, Stop};
-use crate::motion::failure::Obstacle;
 use heapless::Vec;
 
 // Set by hand.
 
 /// Travel of one pull, as a share of the reach of what moves.
 const STRIDE: f32 = 0.05;
-/// Share of that below which the object is stuck.
+/// A pull that is tried where a full one is stuck, as a share of it.
+const SHORTER: f32 = 0.25;
+/// Share of a pull below which the object is stuck.
 const STUCK: f32 = 0.1;
+/// How often the end of a pull is pushed off what it is too close to.
+const CORRECTIONS: usize = 2;
 /// Pulls straight on.
 const STRAIGHT: usize = 16;
-/// Directions in which the object is pulled from the goal.
+/// Directions in which the object is pulled on from the end of a bar.
 const DIRECTIONS: usize = 14;
-/// How often it is pulled straight on in one direction: as far as five times its reach.
-const TRIES: usize = 6;
 /// Pulls along a bar.
 const ALONG_BAR: usize = 64;
 /// Pulls along a bar after which the way out is tried.
@@ -37,16 +40,24 @@ const LEADING_RANGE: f32 = 2.0 * BAR_RANGE;
 /// way, which is not needed at the same time. So many patches cover half a square metre.
 const MAX_SLEEPERS: usize = enclosed::bytes(0) / size_of::<Sleep>();
 
+/// A node of the goal's tree from which the object is pulled on, and the point at which it is pulled, in object coordinates; by default
+/// its centre.
+pub(super) type End = (usize, Option<Point>);
+/// The goal, and the ends of bars, both ways.
+pub(super) type Ends = Vec<End, { 1 + 2 * MAX_BARS }>;
+
 impl Search<'_, '_, '_> {
-    /// Pulls the object from the goal along the bars that it is near there, both ways, then in all directions. Returns whether that
-    /// gives a route, which it writes.
-    pub(super) fn pull_off(
+    /// Pulls the object from the goal along the bars that it is near there, both ways, and notes where it is stuck. Returns whether
+    /// that gives a route, which it writes.
+    pub(super) fn pull_along_bars(
         &mut self,
         route: &mut Route,
         permit: &mut Permit,
         meter: &mut Meter,
     ) -> Result<bool, Stop> {
         let to_object = self.goal.pose(&self.space.moving.centre).inverse();
+        // There is room for all.
+        let _ = self.ends.push((0, None));
         let mut tried = Vec::<Vector, MAX_BARS>::new();
         for &(bar, at) in &self.bars_at(0, BAR_RANGE, meter)? {
             if tried.iter().any(|other| other.dot(&bar).abs() > SAME_BAR) || tried.push(bar).is_err() {
@@ -54,16 +65,6 @@ impl Search<'_, '_, '_> {
             }
             for direction in [bar, -bar] {
                 if self.pull_along((direction, to_object * at), route, permit, meter)? {
-                    return Ok(true);
-                }
-            }
-        }
-        for direction in (0..DIRECTIONS).map(|index| fibonacci_direction(index, DIRECTIONS)) {
-            let mut at = 0;
-            for _ in 0..TRIES {
-                let Some(next) = self.pull_straight(at, direction, permit, meter)? else { break };
-                at = next;
-                if self.meets(GOAL, at, route, permit, meter)? {
                     return Ok(true);
                 }
             }
@@ -95,7 +96,24 @@ impl Search<'_, '_, '_> {
                 return Ok(true);
             }
         }
+        if at != 0 {
+            let _ = self.ends.push((at, Some(point)));
+        }
         self.meets(GOAL, at, route, permit, meter)
+    }
+
+    /// Pulls the object on from one of the ends in one of the directions, each pair after the other. Returns the last node, if it moves
+    /// at all.
+    pub(super) fn pull_on(
+        &mut self,
+        index: usize,
+        permit: &mut Permit,
+        meter: &mut Meter,
+    ) -> Result<Option<usize>, Stop> {
+        let count = self.ends.len().max(1);
+        let Some(&end) = self.ends.get(index % count) else { return Ok(None) };
+        let direction = fibonacci_direction(index / count % DIRECTIONS, DIRECTIONS);
+        self.pull_straight(end, direction, permit, meter)
     }
 
     /// Pulls the object on from the node of the goal's tree that is nearest to a target, by its centre towards the target's. Returns the
@@ -108,36 +126,53 @@ impl Search<'_, '_, '_> {
     ) -> Result<Option<usize>, Stop> {
         let Some(from) = self.trees[GOAL].nearest(target) else { return Ok(None) };
         let shift = self.trees[GOAL].placement(from).leg_to(target).shift;
-        self.pull_straight(from, unit_or(shift, self.params.up()), permit, meter)
+        self.pull_straight((from, None), unit_or(shift, self.params.up()), permit, meter)
     }
 
-    /// Pulls the object on from a node of the goal's tree by its centre. Returns the last node, if it moves at all.
+    /// Pulls the object on from a node of the goal's tree. Returns the last node, if it moves at all.
     fn pull_straight(
         &mut self,
-        from: usize,
+        (from, point): End,
         direction: Vector,
         permit: &mut Permit,
         meter: &mut Meter,
     ) -> Result<Option<usize>, Stop> {
         let mut at = from;
         for _ in 0..STRAIGHT {
-            let Some(next) = self.pull(at, (direction, None), permit, meter)? else { break };
+            let Some(next) = self.pull(at, (direction, point), permit, meter)? else { break };
             at = next;
         }
         Ok((at != from).then_some(at))
     }
 
-    /// Pulls once from a node of the goal's tree in a direction, by a point in object coordinates or by the centre. Returns the node
-    /// where that ends; `None` if the object is stuck.
+    /// Pulls once from a node of the goal's tree in a direction, at a point; a second time less far, if the object is stuck. Returns the
+    /// node where that ends; `None` if it is stuck again.
     fn pull(
         &mut self,
+        from: usize,
+        how: (Vector, Option<Point>),
+        permit: &mut Permit,
+        meter: &mut Meter,
+    ) -> Result<Option<usize>, Stop> {
+        let stride = (STRIDE * self.space.moving.reach).max(LEAST_STRIDE);
+        for stride in [stride, SHORTER * stride] {
+            if let Some(node) = self.pull_by(stride, from, how, permit, meter)? {
+                return Ok(Some(node));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Pulls once, `travel` metres.
+    fn pull_by(
+        &mut self,
+        travel: f32,
         from: usize,
         (direction, at): (Vector, Option<Point>),
         permit: &mut Permit,
         meter: &mut Meter,
     ) -> Result<Option<usize>, Stop> {
-        let moving = self.space.moving;
-        let support = self.space.obstacles.support;
+        let (moving, support) = (self.space.moving, self.space.obstacles.support);
         let sleepers = Support::sleepers(support.patches.len());
         let (Some(body), Some(scratch)) = (moving.body, &mut self.scratch) else { return Ok(None) };
         let mut arena = scratch.scratch();
@@ -145,16 +180,20 @@ impl Search<'_, '_, '_> {
             return Ok(None);
         };
         let place = self.trees[GOAL].placement(from);
-        let stride = (STRIDE * moving.reach).max(LEAST_STRIDE);
-        let pull = Pull { direction, at, travel: stride, gap: ASIDE_EXCESS * self.required };
+        let pull = Pull { direction, at, travel, gap: ASIDE_EXCESS * self.required };
         let pose = pulled((&body, support), &place.pose(&moving.centre), &pull, self.params, sleeps, meter)?;
-        let target = Placement::of(&pose, &moving.centre);
+        let mut target = Placement::of(&pose, &moving.centre);
+        // The simulation is no more exact than the distance field.
+        let keep = (ASIDE_EXCESS * self.required, self.trees[GOAL].metric().radius);
+        for _ in 0..CORRECTIONS {
+            target = target.after(&aside(self.space, &target, &Leg::NONE, keep, meter)?, 1.0);
+        }
         if place.leg_to(&target).travel(moving.reach) < LEAST_TRAVEL {
             return Ok(None);
         }
         let grown = self.grow_from((GOAL, from), &target, permit, meter)?;
         Ok(grown.map(|(node, _)| node).filter(|node| {
-            place.leg_to(&self.trees[GOAL].placement(*node)).travel(moving.reach) >= STUCK * stride
+            place.leg_to(&self.trees[GOAL].placement(*node)).travel(moving.reach) >= STUCK * travel
         }))
     }
 

@@ -5,6 +5,7 @@
 
 use super::permit::Permit;
 use super::placement::{Leg, Placement};
+use super::pull::Ends;
 use super::route::Route;
 use super::slide::aside;
 use super::space::Space;
@@ -69,6 +70,8 @@ pub(super) struct Search<'q, 'a, 's> {
     /// Working memory of the object's search, [`enclosed::bytes`](super::enclosed::bytes) of it: for pulls and for the proof that
     /// there is no way.
     pub(super) scratch: Option<Arena<'q>>,
+    /// From where the object is pulled on.
+    pub(super) ends: Ends,
     /// Poses sampled.
     pub(super) sampled: usize,
     /// Poses that may be sampled, all in all: shown as progress.
@@ -114,8 +117,11 @@ impl Search<'_, '_, '_> {
             // Two of three samples are for the tree of the goal, which is the one in narrow places.
             let grown = if index % 3 == 2 { START } else { GOAL };
             let node = match index % 3 {
-                0 if index.is_multiple_of(2) => self.drag_towards(&target, permit, meter)?,
-                0 => self.pull_towards(&target, permit, meter)?,
+                0 => match index % 9 {
+                    0 => self.drag_towards(&target, permit, meter)?,
+                    3 => self.pull_on(index / 9, permit, meter)?,
+                    _ => self.pull_towards(&target, permit, meter)?,
+                },
                 _ => self.grow(grown, &target, permit, meter)?.map(|(node, _)| node),
             };
             if let Some(node) = node
@@ -127,7 +133,7 @@ impl Search<'_, '_, '_> {
         Ok(Outcome::UsedUp)
     }
 
-    /// Tries what most often works: straight to a start, and along the bar on which the object hangs, both ways; last, pulled.
+    /// Tries what most often works: straight to a start, and along the bar on which the object hangs, both ways, dragged and then pulled.
     fn leave_goal(
         &mut self,
         route: &mut Route,
@@ -164,7 +170,7 @@ impl Search<'_, '_, '_> {
                 }
             }
         }
-        self.pull_off(route, permit, meter)
+        self.pull_along_bars(route, permit, meter)
     }
 
     /// Directions of the bars that the object is near at the goal, one of each.

@@ -6,15 +6,17 @@ use super::problem::{Problem, start};
 use super::row::{Peer, Planned, Row};
 use super::surroundings::{Around, Surroundings, extent, front, sampled, surroundings};
 use super::tree::Tree;
+use crate::judge::replay::{DEEPEST, STEP};
 use crate::judge::{Bullet, Judge, Scene};
-use crate::shapes::vector::{Z, double, unit};
-use crate::shapes::{Insertion, Random, insertion, joined};
+use crate::shapes::vector::{V, Z, double, scale, single, unit};
+use crate::shapes::{Insertion, Random, insertion, joints};
 use crate::solid::Solid;
 use crate::tables::case::Case;
 use hangpose::geometry::Pose;
 use hangpose::hanging::{HangingPose, Hung, Object, Request, Supporter, predict_bytes, predict_many};
 use hangpose::motion::{Motion, PlanError, Task};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses, sample_supporter};
+use nalgebra::Translation3;
 
 /// Number of poses that are looked through for one that hangs.
 const TOP: usize = 10;
@@ -105,11 +107,11 @@ pub fn pair(case: &Case, arounds: &[Around], options: &Options) -> Result<Vec<Ro
             continue;
         }
         let gripper = grip.as_ref().filter(|_| options.gripper).map(Grip::gripper);
-        let joint = case.joined(&rest(&goal));
+        let joints = case.joints(&rest(&goal));
         let parts = (&*case.supporter, &case.bars[..]);
         let [low, high] = extent(&case.object, &rest(&goal), Z);
         // A wall closes the loop of a rail.
-        let is_possible = insertion(joint, &case.openings, parts, *around == Around::Wall);
+        let is_possible = insertion(&joints, &case.openings, parts, *around == Around::Wall);
         row.insertion = Some(match is_possible {
             Insertion::Possible if high - low > height => Insertion::Unknown,
             other => other,
@@ -133,7 +135,21 @@ pub fn pair(case: &Case, arounds: &[Around], options: &Options) -> Result<Vec<Ro
     Ok(rows)
 }
 
-/// A mug on the last free branch of a tree.
+/// Whether an object among obstacles can be moved straight from a pose until it is beyond all of them: no deeper than a replay allows.
+/// Mugs on the branches beside that of another one may bar its way.
+fn comes_straight(solid: &Solid, obstacles: &Solid, from: &Pose, direction: V) -> bool {
+    let [_, end] = extent(obstacles, &Pose::identity(), direction);
+    let [begin, _] = extent(solid, from, direction);
+    let scene = Scene { tilt: false, ..Scene::new(solid, obstacles) };
+    let mut world = Bullet::default().world(&scene);
+    (0..=((end - begin) / STEP).ceil() as u32).all(|step| {
+        let away = scale(direction, STEP * f64::from(step));
+        world.release(&(Translation3::from(single(away)) * from).cast());
+        world.penetration() <= DEEPEST
+    })
+}
+
+/// A mug on the last free branch of a tree. The construction tells that it comes there if it comes straight along the branch.
 pub fn tree(seed: u64, options: &Options) -> Result<Option<Row>, PlanError> {
     let Tree { tree, mugs, last } = Tree::new(seed);
     let params = Params { seed, ..Params::default() };
@@ -164,13 +180,15 @@ pub fn tree(seed: u64, options: &Options) -> Result<Option<Row>, PlanError> {
     let goal = hanging((&objects[last], &supporter), (solid, &obstacles), &request, &params);
     let Some(goal) = goal else { return Ok(None) };
     let parts = (&tree.solid, &tree.bars[..]);
-    let Some(joint) = joined((solid, &mugs[last].openings), parts, &rest(&goal)) else { return Ok(None) };
+    let joints = joints((solid, &mugs[last].openings), parts, &rest(&goal));
+    let Some(joint) = joints.first() else { return Ok(None) };
+    let bar = &tree.bars[joint.bar];
     let grip = Grip::of(solid, &rest(&goal), &obstacles);
     if options.gripper && grip.is_none() {
         return Ok(None);
     }
     let gripper = grip.as_ref().filter(|_| options.gripper).map(Grip::gripper);
-    let [x, y, _] = double(tree.bars[joint.bar].direction);
+    let [x, y, _] = double(bar.direction);
     let mut random = Random::named("mug on a tree", seed);
     let start = start(solid, &obstacles, &goal.pose, unit([x, y, 0.0]), gripper.as_ref(), &mut random);
     let motion = Motion { start: Some(start), gripper, ..options.motion };
@@ -183,7 +201,12 @@ pub fn tree(seed: u64, options: &Options) -> Result<Option<Row>, PlanError> {
         supporter: "mug tree".into(),
         scene: "mug tree, one branch free".into(),
         gripper: options.gripper,
-        insertion: Some(insertion(Some(joint), &mugs[last].openings, parts, false)),
+        insertion: Some(match insertion(&joints, &mugs[last].openings, parts, false) {
+            Insertion::Possible if !comes_straight(solid, &obstacles, &goal.pose, double(bar.direction)) => {
+                Insertion::Unknown
+            }
+            other => other,
+        }),
         plan: Some(plan),
         peer,
     }))

@@ -19,22 +19,27 @@ pub enum Insertion {
 /// Distance from the ends of a supporter within which a bar without a free end may still have a stub, m.
 const END: f64 = 0.05;
 
-/// Whether there is a way to a pose that is joined as told. `is_closed` says whether a wall closes the loop of every bar without a
+/// Whether there is a way to a pose with these joints, the first of the kind that people prefer. `is_closed` says whether a wall closes the loop of every bar without a
 /// free end.
 ///
 /// - A closed hole comes over the free end of a bar if the end is not wider than the hole. A wider end may pass a hole that
 ///   is longer in one direction, which is not told. Nor is it of a wire that has no bar, as the bracket that carries a carabiner.
+/// - Holes over several bars must come off all of them at once, which is not told.
 /// - A closed hole around a bar without a free end is linked with it. Without a wall, it may come over the plates at its
 ///   ends, which is not told.
 /// - Everything else comes from the open side: a hook over the bar, a hollow over the end, a neck between two free ends, and
 ///   what lies on top from above.
 pub fn insertion(
-    joint: Option<Joint>,
+    joints: &[Joint],
     openings: &[Opening],
     (supporter, bars): (&Solid, &[Bar]),
     is_closed: bool,
 ) -> Insertion {
-    let Some(joint) = joint else { return Insertion::Possible };
+    let Some(joint) = joints.first() else { return Insertion::Possible };
+    let held = || joints.iter().filter(|joint| openings[joint.opening].kind == OpeningKind::Hole);
+    if held().any(|other| other.bar != joint.bar) {
+        return Insertion::Unknown;
+    }
     let (opening, bar) = (&openings[joint.opening], &bars[joint.bar]);
     match opening.kind {
         OpeningKind::Hole if bar.has_free_end => {
@@ -54,5 +59,36 @@ pub fn insertion(
             if is_closed && is_between { Insertion::Impossible } else { Insertion::Unknown }
         }
         OpeningKind::Hook | OpeningKind::Rim | OpeningKind::Neck { .. } => Insertion::Possible,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes::{OBJECTS, SUPPORTERS};
+    use hangpose::mechanics::Kind;
+
+    #[test]
+    fn a_hole_comes_off_one_bar_and_may_not_come_off_two() {
+        let tree = SUPPORTERS.iter().find(|kind| kind.name == "mug tree").unwrap().make(1);
+        let bag = OBJECTS.iter().find(|kind| kind.name == "bag").unwrap().make(1);
+        let holes = bag.openings.iter().zip(0..).filter(|(opening, _)| opening.kind == OpeningKind::Hole);
+        let on = |bars: [usize; 2]| -> Vec<Joint> {
+            let holes = holes.clone().zip(bars);
+            holes
+                .map(|((_, opening), bar)| Joint {
+                    kind: Kind::Threaded,
+                    opening,
+                    bar,
+                    is_on_bar: true,
+                    at: tree.bars[bar].position,
+                })
+                .collect()
+        };
+        let told = |joints: &[Joint]| insertion(joints, &bag.openings, (&tree.solid, &tree.bars), false);
+        assert_eq!(on([0, 0]).len(), 2);
+        assert_eq!(told(&on([0, 0])), Insertion::Possible);
+        assert_eq!(told(&on([0, 1])), Insertion::Unknown);
+        assert_eq!(told(&[]), Insertion::Possible);
     }
 }

@@ -54,7 +54,13 @@ pub struct Joint {
 }
 
 /// The opening of a made object that is joined with a bar of a made supporter when the object is at `rest`; that of the
-/// kind that people prefer if there are several. `None` if none is: the object is balanced.
+/// kind that people prefer if there are several, the first of [`joints`]. `None` if none is: the object is balanced.
+pub fn joined(object: (&Solid, &[Opening]), supporter: (&Solid, &[Bar]), rest: &Pose) -> Option<Joint> {
+    joints(object, supporter, rest).first().copied()
+}
+
+/// All openings of a made object that are joined with bars of a made supporter when the object is at `rest`, those of the kind that
+/// people prefer first.
 ///
 /// Bars are the centre lines of all wires of the supporter, including bends and ends that nothing is meant to hang on. Wall
 /// plates and posts are no bars: an object that hangs on the edge of a plate is not joined. The opening is measured on the mesh by rays from its axis:
@@ -64,7 +70,7 @@ pub struct Joint {
 /// - A hook likewise, and the ray through the bar must end at the object, unless the bar is near the middle.
 /// - A hollow is joined with the free end of a bar that is inside: the rays to all sides and to its ground meet the object.
 /// - A neck is joined with two bars on opposite sides of the stem that are within the radius of the head.
-pub fn joined(object: (&Solid, &[Opening]), supporter: (&Solid, &[Bar]), rest: &Pose) -> Option<Joint> {
+pub fn joints(object: (&Solid, &[Opening]), supporter: (&Solid, &[Bar]), rest: &Pose) -> Vec<Joint> {
     let (surface, lines) = (Surface::new(object.0), Lines::new(supporter));
     let joints = object.1.iter().enumerate().filter_map(|(index, opening)| {
         let (at, segment) = lines.joined(&surface, opening, rest)?;
@@ -77,7 +83,9 @@ pub fn joined(object: (&Solid, &[Opening]), supporter: (&Solid, &[Bar]), rest: &
         let at = super::vector::single(at);
         Some(Joint { kind: opening.kind.hangs(), opening: index, bar, is_on_bar, at })
     });
-    joints.min_by_key(|joint| rank(&joint.kind))
+    let mut joints: Vec<_> = joints.collect();
+    joints.sort_by_key(|joint| rank(&joint.kind));
+    joints
 }
 
 fn ends(bar: &Bar) -> [V; 2] {

@@ -3,7 +3,7 @@
 use super::bvh::{Bvh, Node};
 use super::ray::Ray;
 use crate::geometry::shapes::triangle;
-use crate::geometry::{Aabb, Mesh, Point, Vector};
+use crate::geometry::{Aabb, Mesh, Point, Pose, Vector};
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop, Unfinished};
 use bytemuck::{Pod, Zeroable};
@@ -124,6 +124,33 @@ impl<'m> Surface<'m> {
             if hit { -1.0 } else { limit }
         });
         hit
+    }
+
+    /// Whether an edge of another mesh, which `pose` brings into these coordinates, passes through a triangle of this one. Two meshes
+    /// cross where that holds of one of them. Counts the queries.
+    pub(crate) fn is_crossed_by(&self, other: &Surface, pose: &Pose, queries: &mut usize) -> bool {
+        let mut is_crossed = false;
+        let bounds = self.aabb();
+        other.bvh.descend(|_, node| {
+            let aabb = node.aabb();
+            *queries += 1;
+            if is_crossed || !self.is_within(&(pose * aabb.centre()), 0.5 * aabb.diagonal()) {
+                return false;
+            }
+            for triangle in node.items().map_or(&[][..], |items| &other.triangles[items]) {
+                let [a, b, c] = triangle.map(|corner| pose * corner);
+                for [from, to] in [[a, b], [b, c], [c, a]] {
+                    let ray = Ray::new(&from, &(to - from), &bounds);
+                    *queries += 1;
+                    self.bvh.visit_along(&ray, 1.0, |items, limit| {
+                        is_crossed |= self.triangles[items].iter().any(|t| ray.hit(t, limit).is_some());
+                        if is_crossed { -1.0 } else { limit }
+                    });
+                }
+            }
+            !is_crossed
+        });
+        is_crossed
     }
 
     /// The point of the mesh that is closest to `point`.
@@ -252,6 +279,22 @@ mod tests {
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         check(&Surface::build(&mesh, inside_out, &mut arena, &Meter::unwatched()).unwrap());
+    }
+
+    #[test]
+    fn cubes_cross_where_neither_holds_the_other_nor_is_apart() {
+        with_cube(false, false, |cube| {
+            let crosses = |pose: &Pose| {
+                let mut queries = 0;
+                [*pose, pose.inverse()].iter().any(|pose| cube.is_crossed_by(cube, pose, &mut queries))
+            };
+            let turned = nalgebra::UnitQuaternion::from_euler_angles(0.3, 0.2, 0.1);
+            let at = |x: f32, turned| Pose::from_parts(nalgebra::Translation3::new(x, 0.1, 0.2), turned);
+            assert!(crosses(&at(1.9, turned)));
+            assert!(crosses(&at(1.9, nalgebra::UnitQuaternion::identity())));
+            assert!(!crosses(&at(2.1, nalgebra::UnitQuaternion::identity())));
+            assert!(!crosses(&at(4.0, turned)));
+        });
     }
 
     #[test]

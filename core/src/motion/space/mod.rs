@@ -246,6 +246,20 @@ impl<'a> Space<'a> {
         Ok(nearest)
     }
 
+    /// Whether the mesh of the object crosses that of one that hangs: both have details that the distance field lacks.
+    pub(super) fn crosses_hung(&self, at: &Placement, meter: &mut Meter) -> Result<bool, Stop> {
+        let Some(body) = &self.moving.body else { return Ok(false) };
+        let to_object = at.pose(&self.moving.centre).inverse();
+        let mut queries = 0;
+        let crosses = self.obstacles.hung.iter().any(|hung| {
+            let (between, other) = (to_object * hung.pose, hung.object.surface());
+            body.surface.is_crossed_by(other, &between, &mut queries)
+                || other.is_crossed_by(body.surface, &between.inverse(), &mut queries)
+        });
+        meter.distance_queries(queries)?;
+        Ok(crosses)
+    }
+
     /// How far the object is inside the workspace, metres; negative if a part of it is outside, infinite without a workspace.
     pub(super) fn room_at(&self, at: &Placement) -> f32 {
         self.workspace.map_or(f32::INFINITY, |workspace| workspace.room_at(&at.pose(&self.moving.centre)))
