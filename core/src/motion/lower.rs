@@ -9,9 +9,9 @@ use crate::monitor::{Meter, Stop};
 /// distance field, whose error in thin walls is that of a voxel; a robot that goes on to such a pose presses. More than the depth at
 /// which the mechanics corrects no penetration, 0.1 mm; less than the millimetre that a path may be off.
 const DEEPEST: f32 = 0.0003;
-/// Largest travel between two poses that are tested, metres, as long as [`MAX_STEPS`] allow it: a wire that is thinner than this is
-/// not missed between a pose above the surface and one that is below it altogether.
-const STEP: f32 = 0.0005;
+/// Largest travel between two poses that are tested, metres, as long as [`MAX_STEPS`] allow it: as on the way. A wire that is thicker
+/// than this is not missed between a pose above the surface and one that is below it altogether.
+const STEP: f32 = 0.001;
 /// Most steps of the way down: each costs half a millisecond.
 const MAX_STEPS: usize = 16;
 /// Halvings of the last step: to a hundredth of a millimetre.
