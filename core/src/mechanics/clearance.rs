@@ -1,9 +1,12 @@
 //! Tests whether an object is clear of the supporter.
 
-use super::constants::{FIELD_BAND_RATIO, FIELD_ERROR, MAX_PUSHES_OFF, PATCH_PENETRATION, PUSH_OFF_EXCESS};
+use super::constants::{
+    BAR_TO_SURFACE, FIELD_BAND_RATIO, FIELD_ERROR, MAX_PUSHES_OFF, PATCH_PENETRATION, PUSH_OFF_EXCESS,
+    REPRESENTATIVE_SPACING,
+};
 use super::touch::nearest_on_patch;
 use super::{Body, Support};
-use crate::geometry::{Point, Pose, Vector, unit_or};
+use crate::geometry::{Point, Pose, Surface, Vector, unit_or};
 use crate::monitor::{Meter, Stop};
 use core::cell::Cell;
 
@@ -31,8 +34,8 @@ pub(crate) fn first_within(
 /// Whether the supporter is clear of the object's surface at `pose`. Three conditions must hold:
 ///
 /// - Every point of the supporter is farther than `clearance` metres from the mesh, exactly.
-/// - No bar and no plane of the supporter passes through the mesh between its points. This covers meshes without an
-///   inside.
+/// - No bar and no plane of the supporter passes through the mesh between its points, nor between the end of a bar and a surface that it
+///   leads to. This covers meshes without an inside, and blades that are thinner than the spacing of the points.
 /// - No part of the mesh that the field misses, such as the strings of a racquet, is closer to a point than
 ///   half the reach of the largest patch. Such a part may pass between the points.
 pub(crate) fn is_off_surface(
@@ -41,7 +44,7 @@ pub(crate) fn is_off_surface(
     clearance: f32,
     meter: &mut Meter,
 ) -> Result<bool, Stop> {
-    Ok(first_on_surface(scene, pose, clearance, meter)?.is_none())
+    Ok(first_on_surface(scene, pose, (clearance, BAR_TO_SURFACE), meter)?.is_none())
 }
 
 /// The pose itself if [`is_off_surface`] holds of it; otherwise the pose after shifts off the parts of the supporter that it is too
@@ -56,7 +59,7 @@ pub(crate) fn push_off_surface(
     let most = clearance + field.voxel_size();
     let mut pushed = *pose;
     for _ in 0..=MAX_PUSHES_OFF {
-        let Some(hit) = first_on_surface(scene, &pushed, clearance, meter)? else {
+        let Some(hit) = first_on_surface(scene, &pushed, (clearance, 0.0), meter)? else {
             return Ok(Some(pushed));
         };
         let at = pushed.inverse_transform_point(&hit);
@@ -77,12 +80,13 @@ pub(crate) fn push_off_surface(
     Ok(None)
 }
 
-/// Whether a point of the supporter is deeper than `depth` metres inside the mesh at `pose`, exactly. Points between those of the
-/// cloud are tested as well: a string of a racquet may be thinner than what is between them.
+/// Whether a point of the supporter is deeper than `depth` metres inside the mesh at `pose`, exactly, or closer than `thin_gap` metres to
+/// a part that is thinner than what is between the points, where its surface bulges. Points half way between those of the cloud are tested
+/// as well.
 pub(crate) fn is_deeper(
     (body, support): (&Body, &Support),
     pose: &Pose,
-    depth: f32,
+    (depth, thin_gap): (f32, f32),
     meter: &mut Meter,
 ) -> Result<bool, Stop> {
     let (field, surface) = (body.field, body.surface);
@@ -99,14 +103,18 @@ pub(crate) fn is_deeper(
         }
         // The field may miss thin parts.
         let is_missed = field.distance(&centre) > radius + near;
-        if is_missed && !surface.is_within(&centre, radius) {
+        if is_missed && !surface.is_within(&centre, radius + thin_gap) {
             return false;
         }
         let Some(items) = node.items() else { return true };
         let mut is_deep = |point: &Point| {
             queries += 1;
             let at = to_object * point;
-            (is_missed || field.distance(&at) < near) && surface.signed_distance(&at) < -depth
+            if field.distance(&at) >= near && !surface.is_within(&at, near) {
+                return false;
+            }
+            let distance = surface.signed_distance(&at);
+            distance < -depth || distance < thin_gap && is_thin_at(surface, &at, distance)
         };
         found = support.tree.points().get(items.clone()).unwrap_or_default().iter().any(&mut is_deep)
             || support.patches_of(&items).any(|patch| {
@@ -122,11 +130,19 @@ pub(crate) fn is_deeper(
     Ok(found)
 }
 
-/// A point of the supporter that contradicts [`is_off_surface`].
+/// Whether the mesh is thinner than the spacing of patches where it is nearest to a point, `distance` metres away: negative inside.
+fn is_thin_at(surface: &Surface, point: &Point, distance: f32) -> bool {
+    let nearest = surface.closest_point(point);
+    let outwards = unit_or((point - nearest) * distance.signum(), Vector::zeros());
+    surface.signed_distance(&(nearest - outwards * REPRESENTATIVE_SPACING)) > 0.0
+}
+
+/// A point of the supporter that contradicts [`is_off_surface`], where bars are taken to reach surfaces that are `beyond` metres from
+/// them at most.
 fn first_on_surface(
     scene: (&Body, &Support),
     pose: &Pose,
-    clearance: f32,
+    (clearance, beyond): (f32, f32),
     meter: &mut Meter,
 ) -> Result<Option<Point>, Stop> {
     let (field, surface, thin) = (scene.0.field, scene.0.surface, 0.5 * scene.1.reach);
@@ -143,12 +159,22 @@ fn first_on_surface(
         let length = segment.norm();
         length > 0.0 && surface.closest_hit(from, &(segment / length)).is_some_and(|hit| hit < length)
     };
-    first_hit(scene, pose, greatest, ball_gap, is_point_clear, crosses, meter)
+    let is_crossed = |patch: usize, [from, to]: [Point; 2]| {
+        let is_bar = || scene.1.patches[patch].bar_direction().is_some();
+        crosses(&from, &to)
+            || beyond > 0.0
+                && is_bar()
+                && [(from, to), (to, from)].iter().any(|(from, to)| {
+                    let end = to + unit_or(to - from, Vector::zeros()) * beyond;
+                    crosses(to, &end) && scene.1.is_between(&(pose * to), &(pose * end))
+                })
+    };
+    first_hit(scene, pose, greatest, ball_gap, is_point_clear, is_crossed, meter)
 }
 
 /// Returns the first part of the supporter that is not clear of the object: a point for which
 /// `is_point_clear` is false, the deepest point of a patch that penetrates the object by more than
-/// [`PATCH_PENETRATION`], or the centre of a patch of a bar or plane of which a segment `crosses` the object.
+/// [`PATCH_PENETRATION`], or the centre of a patch of a bar or plane of which a segment `is_crossed` by the object.
 ///
 /// The closures take object coordinates. `ball_gap` is `None` if every point within a radius of a point is clear, otherwise how
 /// close such a ball may come to the object, metres; where that is least is looked first, since most poses that are tested
@@ -160,7 +186,7 @@ fn first_hit(
     distance: f32,
     ball_gap: impl Fn(&Point, f32) -> Option<f32>,
     is_point_clear: impl Fn(&Point) -> bool,
-    crosses: impl Fn(&Point, &Point) -> bool,
+    is_crossed: impl Fn(usize, [Point; 2]) -> bool,
     meter: &mut Meter,
 ) -> Result<Option<Point>, Stop> {
     // A matrix rotates faster than the quaternion of the pose.
@@ -170,7 +196,7 @@ fn first_hit(
     };
     let points = support.tree.points();
     let hit_of_patch = |patch: usize| {
-        let (position, patch) = (support.position(patch), &support.patches[patch]);
+        let (index, position, patch) = (patch, support.position(patch), &support.patches[patch]);
         let at = to_object(&position);
         if let Ok(nearest) = nearest_on_patch(body, patch, &rotation, &at, |_| -PATCH_PENETRATION)
             && nearest.gap < -PATCH_PENETRATION
@@ -178,8 +204,7 @@ fn first_hit(
             return Some(pose * nearest.at);
         }
         let place = |offset: Vector| at + rotation.inverse_transform_vector(&offset);
-        let is_crossed = |[from, to]: [Vector; 2]| crosses(&place(from), &place(to));
-        patch.filled_segments().any(is_crossed).then_some(position)
+        patch.filled_segments().any(|ends| is_crossed(index, ends.map(place))).then_some(position)
     };
     let (mut found, queries) = (None::<Point>, Cell::new(0));
     let count = |some: usize| queries.set(queries.get() + some);

@@ -108,6 +108,9 @@ pub(super) const DEPARTURE_TIME: f32 = 0.1;
 /// Larger: fewer patches, less time, and small features such as the lip at a bar's end go unseen. Smaller:
 /// more patches and more time. Chosen by hand; `docs/MECHANICS.md` says which lips are seen.
 pub(crate) const REPRESENTATIVE_SPACING: f32 = 0.0025;
+/// Distance from the last patch of a bar to a surface across its way that it is taken to reach, metres: two patches, as there may be
+/// no point of either where they join.
+pub(super) const BAR_TO_SURFACE: f32 = 2.0 * REPRESENTATIVE_SPACING;
 /// Minimum cosine between the normals of a representative and of a point that it stands for: about 25
 /// degrees.
 ///

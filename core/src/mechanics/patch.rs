@@ -176,6 +176,17 @@ impl Patch {
         )
     }
 
+    /// Whether a segment passes through the patch, as if it were flat; by the offsets of its ends, metres.
+    pub(super) fn is_passed(&self, from: &Vector, to: &Vector) -> bool {
+        let [along, across, normal] = self.axes();
+        let [before, after] = [from, to].map(|end| end.dot(&normal));
+        if self.is_wire() || before * after > 0.0 || before == after {
+            return false;
+        }
+        let at = from + (to - from) * (before / (before - after));
+        at.dot(&along).abs() <= self.extents[0] && at.dot(&across).abs() <= self.extents[1]
+    }
+
     /// Whether the patch is longer than those of a dense cloud, so that its middle tells little of its ends.
     pub(super) fn is_long(&self) -> bool {
         self.extents[0].max(self.extents[1]) > LONG

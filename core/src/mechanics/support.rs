@@ -125,6 +125,11 @@ impl<'a> Support<'a> {
         nearest.and_then(|(_, patch)| patch.bar_direction())
     }
 
+    /// Whether a segment passes through a patch.
+    pub(crate) fn is_between(&self, from: &Point, to: &Point) -> bool {
+        self.positions().zip(self.patches).any(|(at, patch)| patch.is_passed(&(from - at), &(to - at)))
+    }
+
     /// Indices of the patches at a range of points of the tree.
     pub(crate) fn patches_of(&self, points: &Range<usize>) -> Range<usize> {
         let before = |limit: usize| self.representatives.partition_point(|&index| (index as usize) < limit);

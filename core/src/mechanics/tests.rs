@@ -457,6 +457,30 @@ fn a_bar_through_a_sheet_is_detected_between_its_points() {
     });
 }
 
+/// The last points of the bar are 4 mm before the plate, if there is one. A sheet of 0.2 mm fits between.
+#[test]
+fn a_sheet_does_not_slip_through_between_a_bar_and_its_plate() {
+    let normal_at = |k: usize| {
+        let (sin, cos) = (core::f32::consts::TAU * (k % 8) as f32 / 8.0).sin_cos();
+        Vector::new(0.0, sin, cos)
+    };
+    let bar = (0..160).map(|k| {
+        let at: [f32; 3] = (Vector::x() * (0.002 * (k / 8) as f32 - 0.042) + normal_at(k) * 0.003).into();
+        (at, normal_at(k).into())
+    });
+    let plate = (0..441)
+        .map(|k| ([0.0, 0.002 * (k % 21) as f32 - 0.02, 0.002 * (k / 21) as f32 - 0.02], [-1.0, 0.0, 0.0]));
+    let square = [[-0.01, -0.01], [0.01, -0.01], [0.01, 0.01], [-0.01, 0.01]];
+    for has_plate in [true, false] {
+        let cloud = bar.clone().chain(plate.clone().filter(|_| has_plate)).unzip();
+        Scene::new(test_shapes::prism(0.0002, &square), cloud).try_out(|lab| {
+            let (pose, scene) = (at(-0.002, 0.0, 0.0), (&lab.body, &lab.support));
+            let is_off = is_off_surface(scene, &pose, 0.0005, &mut Meter::unwatched()).unwrap();
+            assert_eq!(is_off, !has_plate);
+        });
+    }
+}
+
 #[test]
 fn a_wire_is_fitted_to_the_line_of_its_points() {
     // A wire of radius 1 mm along x with a point every 6 mm, each on another side; the wire of the ring has a

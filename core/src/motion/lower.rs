@@ -9,6 +9,9 @@ use crate::monitor::{Meter, Stop};
 /// distance field, whose error in thin walls is that of a voxel; a robot that goes on to such a pose presses. More than the depth at
 /// which the mechanics corrects no penetration, 0.1 mm; less than the millimetre that a path may be off.
 const DEEPEST: f32 = 0.0003;
+/// Distance that strings and other thin parts of the object keep from the points of the supporter, metres: between the points its
+/// surface bulges by a few tenths of a millimetre, and what is pressed into a string throws it off.
+const THIN_GAP: f32 = 0.0001;
 /// Largest travel between two poses that are tested, metres, as long as [`MAX_STEPS`] allow it: as on the way. A wire that is thicker
 /// than this is not missed between a pose above the surface and one that is below it altogether.
 const STEP: f32 = 0.001;
@@ -27,7 +30,7 @@ pub(super) fn until_contact(
     let Some(body) = &space.moving.body else { return Ok(lowering) };
     let mut is_deep = |share: f32| {
         let pose = release.after(&lowering, share).pose(&space.moving.centre);
-        is_deeper((body, space.obstacles.support), &pose, DEEPEST, meter)
+        is_deeper((body, space.obstacles.support), &pose, (DEEPEST, THIN_GAP), meter)
     };
     let steps = (libm::ceilf(lowering.travel(space.moving.reach) / STEP) as usize).clamp(1, MAX_STEPS);
     for step in 1..=steps {
