@@ -160,7 +160,7 @@ fn first_on_surface(
         length > 0.0 && surface.closest_hit(from, &(segment / length)).is_some_and(|hit| hit < length)
     };
     let is_crossed = |patch: usize, [from, to]: [Point; 2]| {
-        let is_bar = || scene.1.patches[patch].bar_direction().is_some();
+        let is_bar = || scene.1.patches.get(patch).is_some_and(|patch| patch.bar_direction().is_some());
         crosses(&from, &to)
             || beyond > 0.0
                 && is_bar()

@@ -137,13 +137,15 @@ impl<'m> Surface<'m> {
             if is_crossed || !self.is_within(&(pose * aabb.centre()), 0.5 * aabb.diagonal()) {
                 return false;
             }
-            for triangle in node.items().map_or(&[][..], |items| &other.triangles[items]) {
+            let triangles = node.items().and_then(|items| other.triangles.get(items));
+            for triangle in triangles.unwrap_or_default() {
                 let [a, b, c] = triangle.map(|corner| pose * corner);
                 for [from, to] in [[a, b], [b, c], [c, a]] {
                     let ray = Ray::new(&from, &(to - from), &bounds);
                     *queries += 1;
                     self.bvh.visit_along(&ray, 1.0, |items, limit| {
-                        is_crossed |= self.triangles[items].iter().any(|t| ray.hit(t, limit).is_some());
+                        let triangles = self.triangles.get(items).unwrap_or_default();
+                        is_crossed |= triangles.iter().any(|t| ray.hit(t, limit).is_some());
                         if is_crossed { -1.0 } else { limit }
                     });
                 }
