@@ -987,7 +987,8 @@ typedef struct hangpose_plan {
   // no pose; else 0.
   uint32_t pose_index;
   // Number of waypoints of the object, at the front of the array: from the start to the release pose, and on to the rest
-  // pose, or to where the supporter is 0.3 mm inside the mesh before that; with hangpose_motion.take_off the other way.
+  // pose, or to where the supporter is 0.3 mm inside the mesh, or 0.1 mm from a part that is thinner than 2.5 mm, before that;
+  // with hangpose_motion.take_off the other way.
   uint32_t waypoint_count;
   // Index of the release pose. The waypoints between it and the rest pose lower the object into contact.
   uint32_t release;

@@ -14,9 +14,9 @@ const STEP: f32 = 0.001;
 const LEAST_DISTANCE: f32 = 0.00005;
 
 /// The least distance from obstacles at the poses of a route that are tested, metres, capped at [`MAX_CLEARANCE`]; or the first leg
-/// on which the supporter or an object that hangs passes through the mesh of the object, or that takes more than four times [`MAX_STEPS`] tests, as its
-/// steps are a quarter as long. From one of these poses to the next no point of the object
-/// moves farther than [`STEP`], or than a quarter of the distance there.
+/// on which the supporter or an object that hangs passes through the mesh of the object, or that takes more than four times
+/// [`MAX_STEPS`] tests, as its steps are a quarter as long. From one of these poses to the next no point of the object moves farther
+/// than [`STEP`], or than a quarter of the distance there.
 pub(super) fn certify(
     space: &mut Space,
     route: &Route,

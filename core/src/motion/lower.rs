@@ -15,7 +15,7 @@ const THIN_GAP: f32 = 0.0001;
 /// Largest travel between two poses that are tested, metres, as long as [`MAX_STEPS`] allow it: as on the way. A wire that is thicker
 /// than this is not missed between a pose above the surface and one that is below it altogether.
 const STEP: f32 = 0.001;
-/// Most steps of the way down: each costs half a millisecond.
+/// Most steps of the way down, which bound its cost.
 const MAX_STEPS: usize = 16;
 /// Halvings of the last step: to a hundredth of a millimetre.
 const HALVINGS: usize = 5;

@@ -25,7 +25,8 @@ impl Default for Waypoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Path<'w> {
     /// Poses of the object. To hang it: from the start to the release pose, and on to the rest pose, or to where the supporter is
-    /// 0.3 mm inside the mesh of the object before that. To take it off: the other way.
+    /// 0.3 mm inside the mesh of the object, or 0.1 mm from a part that is thinner than 2.5 mm, before that. To take it off: the
+    /// other way.
     pub object: &'w [Waypoint],
     /// Index in `object` of the release pose; the waypoints between it and the rest pose lower the object into contact.
     pub release: usize,

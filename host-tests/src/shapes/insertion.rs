@@ -19,8 +19,8 @@ pub enum Insertion {
 /// Distance from the ends of a supporter within which a bar without a free end may still have a stub, m.
 const END: f64 = 0.05;
 
-/// Whether there is a way to a pose with these joints, the first of the kind that people prefer. `is_closed` says whether a wall closes the loop of every bar without a
-/// free end.
+/// Whether there is a way to a pose with these joints, the first of the kind that people prefer. `is_closed` says whether a wall closes
+/// the loop of every bar without a free end.
 ///
 /// - A closed hole comes over the free end of a bar if the end is not wider than the hole. A wider end may pass a hole that
 ///   is longer in one direction, which is not told. Nor is it of a wire that has no bar, as the bracket that carries a carabiner.
@@ -36,8 +36,8 @@ pub fn insertion(
     is_closed: bool,
 ) -> Insertion {
     let Some(joint) = joints.first() else { return Insertion::Possible };
-    let held = || joints.iter().filter(|joint| openings[joint.opening].kind == OpeningKind::Hole);
-    if held().any(|other| other.bar != joint.bar) {
+    let mut holes = joints.iter().filter(|joint| openings[joint.opening].kind == OpeningKind::Hole);
+    if holes.any(|other| other.bar != joint.bar) {
         return Insertion::Unknown;
     }
     let (opening, bar) = (&openings[joint.opening], &bars[joint.bar]);
