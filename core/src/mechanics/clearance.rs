@@ -4,6 +4,7 @@ use super::constants::{
     BAR_TO_SURFACE, FIELD_BAND_RATIO, FIELD_ERROR, MAX_PUSHES_OFF, PATCH_PENETRATION, PUSH_OFF_EXCESS,
     REPRESENTATIVE_SPACING,
 };
+use super::patch::Patch;
 use super::touch::nearest_on_patch;
 use super::{Body, Support};
 use crate::geometry::{Point, Pose, Surface, Vector, unit_or};
@@ -145,29 +146,29 @@ fn first_on_surface(
     (clearance, beyond): (f32, f32),
     meter: &mut Meter,
 ) -> Result<Option<Point>, Stop> {
-    let (field, surface, thin) = (scene.0.field, scene.0.surface, 0.5 * scene.1.reach);
-    let greatest = clearance.max(scene.1.reach);
+    let (field, surface, support) = (scene.0.field, scene.0.surface, scene.1);
+    let (thin, greatest) = (0.5 * support.reach, clearance.max(support.reach));
     let ball_gap = |point: &Point, radius: f32| surface.is_within(point, radius + greatest).then_some(0.0);
     let is_point_clear = |point: &Point| {
-        let is_missed_by_field = || {
-            field.distance(point) > thin + FIELD_ERROR * field.voxel_size() && surface.is_within(point, thin)
-        };
-        !surface.is_within(point, clearance) && !is_missed_by_field()
+        let is_far_by_field = field.distance(point) > thin + FIELD_ERROR * field.voxel_size();
+        !surface.is_within(point, if is_far_by_field { clearance.max(thin) } else { clearance })
     };
     let crosses = |from: &Point, to: &Point| {
         let segment = to - from;
         let length = segment.norm();
         length > 0.0 && surface.closest_hit(from, &(segment / length)).is_some_and(|hit| hit < length)
     };
+    let is_crossed_beyond = |bar: &Patch, from: &Point, to: &Point| {
+        let way = unit_or(to - from, Vector::zeros()) * beyond;
+        crosses(to, &(to + way))
+            && support
+                .fixed_at(bar, &(pose * to), &(pose * (to + way)))
+                .is_some_and(|share| crosses(to, &(to + way * share)))
+    };
     let is_crossed = |patch: usize, [from, to]: [Point; 2]| {
-        let is_bar = || scene.1.patches.get(patch).is_some_and(|patch| patch.bar_direction().is_some());
+        let bar = support.patches.get(patch).filter(|patch| beyond > 0.0 && patch.bar_direction().is_some());
         crosses(&from, &to)
-            || beyond > 0.0
-                && is_bar()
-                && [(from, to), (to, from)].iter().any(|(from, to)| {
-                    let end = to + unit_or(to - from, Vector::zeros()) * beyond;
-                    crosses(to, &end) && scene.1.is_between(&(pose * to), &(pose * end))
-                })
+            || bar.is_some_and(|bar| is_crossed_beyond(bar, &from, &to) || is_crossed_beyond(bar, &to, &from))
     };
     first_hit(scene, pose, greatest, ball_gap, is_point_clear, is_crossed, meter)
 }

@@ -1,7 +1,7 @@
 //! Distance of a body from one patch of the supporter.
 
 use super::constants::FIELD_BAND_RATIO;
-use super::touch::nearest_on_patch;
+use super::touch::nearest_from_sample;
 use super::{Body, Support};
 use crate::geometry::{Point, Vector};
 use nalgebra::Rotation3;
@@ -31,16 +31,20 @@ pub(crate) fn gap_to_patch(
     margin: f32,
 ) -> Gap {
     let (patch, field) = (&support.patches[patch], body.field);
-    if let Err(bound) = field.sample_near(at) {
-        let least = bound - patch.reach();
-        if least > margin || !patch.is_long() {
-            // The bricks of the field cover its band. Patches overlap: what of one may be closer to the body than half of its
-            // reach from its centre, is closer to the centre of another.
-            return Gap::Beyond(least.max(bound - 0.5 * patch.reach()).max(FIELD_BAND_RATIO * field.band()));
-        }
+    let (sample, reach) = (field.sample_near(at), patch.reach());
+    let distance = sample.as_ref().map_or_else(|bound| *bound, |(gap, _)| *gap);
+    let band = FIELD_BAND_RATIO * field.band();
+    if sample.is_err() && (distance - reach > margin || !patch.is_long()) {
+        // The bricks of the field cover its band. Patches overlap: what of one may be closer to the body than half of its
+        // reach from its centre, is closer to the centre of another.
+        return Gap::Beyond((distance - 0.5 * reach).max(band));
     }
-    match nearest_on_patch(body, patch, rotation, at, |_| margin) {
+    let beyond = Gap::Beyond((distance - reach).max(band));
+    if distance - reach > margin {
+        return beyond;
+    }
+    match nearest_from_sample(sample, (body, patch), rotation, at, |_| margin) {
         Ok(nearest) => Gap::Near { distance: nearest.gap, at: nearest.at, gradient: nearest.gradient },
-        Err(_) => Gap::Beyond((field.distance(at) - patch.reach()).max(FIELD_BAND_RATIO * field.band())),
+        Err(_) => beyond,
     }
 }

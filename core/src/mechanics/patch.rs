@@ -133,6 +133,13 @@ impl Patch {
         (self.is_wire() || across > BAR_CURVATURE + along.abs()).then_some(self.along)
     }
 
+    /// Radius of the curvature across, metres; infinite where the surface is flat or hollow.
+    pub(super) fn radius_across(&self) -> f32 {
+        let [_, _, right, left] = self.curvatures;
+        let mean = 0.5 * (right + left);
+        if mean > 0.0 { 1.0 / mean } else { f32::INFINITY }
+    }
+
     /// Unit vectors along, across and normal to the patch.
     pub(super) fn axes(&self) -> [Vector; 3] {
         [self.along, self.across(), self.normal]
@@ -176,15 +183,20 @@ impl Patch {
         )
     }
 
-    /// Whether a segment passes through the patch, as if it were flat; by the offsets of its ends, metres.
-    pub(super) fn is_passed(&self, from: &Vector, to: &Vector) -> bool {
+    /// Share of a segment at which it passes through the patch, or as near to it as others would be that face alike, as if it were flat; if
+    /// it does, by the offsets of its ends, metres.
+    pub(super) fn is_passed_at(&self, from: &Vector, to: &Vector) -> Option<f32> {
         let [along, across, normal] = self.axes();
         let [before, after] = [from, to].map(|end| end.dot(&normal));
         if self.is_wire() || before * after > 0.0 || before == after {
-            return false;
+            return None;
         }
-        let at = from + (to - from) * (before / (before - after));
-        at.dot(&along).abs() <= self.extents[0] && at.dot(&across).abs() <= self.extents[1]
+        let share = before / (before - after);
+        let at = from + (to - from) * share;
+        // The patch of a face that is smaller than the distance between patches has no extent.
+        let [length, width] =
+            self.extents.map(|extent| extent.max(PATCH_HALF_EXTENT * REPRESENTATIVE_SPACING));
+        (at.dot(&along).abs() <= length && at.dot(&across).abs() <= width).then_some(share)
     }
 
     /// Whether the patch is longer than those of a dense cloud, so that its middle tells little of its ends.

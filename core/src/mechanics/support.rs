@@ -6,11 +6,15 @@ use super::constants::{
 };
 use super::fit::Surroundings;
 use super::patch::Patch;
-use crate::geometry::{Aabb, Nearest, Neighbour, Point, PointTree, Vector};
+use crate::geometry::{Aabb, Nearest, Neighbour, Point, PointTree, Vector, unit_or};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Unfinished};
 use bytemuck::{Pod, Zeroable};
 use core::ops::Range;
+
+/// Least cosine between a bar and the normal of a surface that is across its way: bars lean by 60 degrees at most. The sides of a
+/// bent bar are at a smaller angle to its way on.
+const ACROSS: f32 = 0.45;
 
 /// A fixed supporter, in its own coordinates.
 #[derive(Clone, Copy)]
@@ -125,9 +129,28 @@ impl<'a> Support<'a> {
         nearest.and_then(|(_, patch)| patch.bar_direction())
     }
 
-    /// Whether a segment passes through a patch.
-    pub(crate) fn is_between(&self, from: &Point, to: &Point) -> bool {
-        self.positions().zip(self.patches).any(|(at, patch)| patch.is_passed(&(from - at), &(to - at)))
+    /// Share of a segment from the end of a patch of a bar at which the bar meets a surface across its way, as where it is fixed to a
+    /// plate. `None` if there is none, or if the bar ends before, with a face of its own.
+    pub(crate) fn fixed_at(&self, bar: &Patch, from: &Point, to: &Point) -> Option<f32> {
+        let way = unit_or(to - from, Vector::zeros());
+        // Half way to its axis, where it meets the face of its end.
+        let inwards = bar.normal * (0.5 * bar.radius_across());
+        let (from, to) = (from - inwards, to - inwards);
+        let (mut fixed, mut end) = (None::<f32>, f32::INFINITY);
+        for (at, patch) in self.positions().zip(self.patches) {
+            let facing = patch.normal.dot(&way);
+            if facing.abs() < ACROSS {
+                continue;
+            }
+            if let Some(share) = patch.is_passed_at(&(from - at), &(to - at)) {
+                if facing > 0.0 {
+                    end = end.min(share);
+                } else if fixed.is_none_or(|before| share < before) {
+                    fixed = Some(share);
+                }
+            }
+        }
+        fixed.filter(|share| *share < end)
     }
 
     /// Indices of the patches at a range of points of the tree.

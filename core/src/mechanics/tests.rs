@@ -471,12 +471,16 @@ fn a_sheet_does_not_slip_through_between_a_bar_and_its_plate() {
     let plate = (0..441)
         .map(|k| ([0.0, 0.002 * (k % 21) as f32 - 0.02, 0.002 * (k / 21) as f32 - 0.02], [-1.0, 0.0, 0.0]));
     let square = [[-0.01, -0.01], [0.01, -0.01], [0.01, 0.01], [-0.01, 0.01]];
-    for has_plate in [true, false] {
-        let cloud = bar.clone().chain(plate.clone().filter(|_| has_plate)).unzip();
-        Scene::new(test_shapes::prism(0.0002, &square), cloud).try_out(|lab| {
-            let (pose, scene) = (at(-0.002, 0.0, 0.0), (&lab.body, &lab.support));
+    // The face of the bar's end, where the bar does not reach the plate.
+    let face = (0..25).map(|k| {
+        ([-0.0035, 0.001 * (k % 5) as f32 - 0.002, 0.001 * (k / 5) as f32 - 0.002], [1.0, 0.0, 0.0])
+    });
+    for (has_plate, has_face) in [(true, false), (true, true), (false, true), (false, false)] {
+        let rest = plate.clone().filter(|_| has_plate).chain(face.clone().filter(|_| has_face));
+        Scene::new(test_shapes::prism(0.0002, &square), bar.clone().chain(rest).unzip()).try_out(|lab| {
+            let (pose, scene) = (at(-0.0017, 0.0, 0.0), (&lab.body, &lab.support));
             let is_off = is_off_surface(scene, &pose, 0.0005, &mut Meter::unwatched()).unwrap();
-            assert_eq!(is_off, !has_plate);
+            assert_eq!(is_off, !has_plate || has_face, "plate {has_plate}, face {has_face}");
         });
     }
 }

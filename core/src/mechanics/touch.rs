@@ -49,7 +49,17 @@ pub(super) fn nearest_on_patch(
     at: &Point,
     margin: impl Fn(&Vector) -> f32,
 ) -> Result<Nearest, f32> {
-    let sample = body.field.sample_near(at);
+    nearest_from_sample(body.field.sample_near(at), (body, patch), rotation, at, margin)
+}
+
+/// The same with the `sample` of the body's field at the centre of the patch.
+pub(super) fn nearest_from_sample(
+    sample: Result<(f32, Vector), f32>,
+    (body, patch): (&Body, &Patch),
+    rotation: &Rotation3<f32>,
+    at: &Point,
+    margin: impl Fn(&Vector) -> f32,
+) -> Result<Nearest, f32> {
     let reach = patch.reach();
     if let Err(bound) = sample {
         let margin = margin(&Vector::zeros());

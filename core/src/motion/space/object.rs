@@ -19,7 +19,9 @@ pub(super) struct ObjectQuery<'q, 'a> {
     pub(super) body: &'q Body<'a>,
     pub(super) pose: &'q Pose,
     pub(super) to_object: Pose,
-    pub(super) found: &'q mut dyn Collector,
+    found: &'q mut dyn Collector,
+    /// Of what is looked for, metres: distance below which touches are of interest.
+    limit: f32,
     /// Distance queries made.
     pub(super) queries: usize,
     /// Stops the queries of a large triangle, of which there may be millions; `None` where there are no triangles.
@@ -33,13 +35,14 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
         found: &'q mut dyn Collector,
         meter: Option<&'q Meter<'q>>,
     ) -> Self {
-        Self { body, pose, to_object: pose.inverse(), found, queries: 0, meter }
+        let limit = found.limit();
+        Self { body, pose, to_object: pose.inverse(), found, limit, queries: 0, meter }
     }
 
     /// Lower bound of the distance of what is in a ball, by its centre in object coordinates; `None` if that need not be looked
     /// at: because it is farther away than matters, or because the bound is exact enough, and is offered.
     fn bound(&mut self, centre: &Point, radius: f32, obstacle: Obstacle) -> Option<f32> {
-        let limit = self.found.limit();
+        let limit = self.limit;
         if self.body.is_beyond(centre, radius + limit) {
             return None;
         }
@@ -60,37 +63,41 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
     }
 
     fn offer(&mut self, distance: f32, at: &Point, gradient: Vector, obstacle: Obstacle) {
-        if distance < self.found.limit() {
+        if distance < self.limit {
             let normal = -(self.pose.rotation * gradient);
-            let touch = Touch { distance, at: self.pose * at, normal, mover: Mover::Object, obstacle };
-            self.found.offer(touch);
+            self.take(Touch { distance, at: self.pose * at, normal, mover: Mover::Object, obstacle });
         }
+    }
+
+    fn take(&mut self, touch: Touch) {
+        self.found.offer(touch);
+        self.limit = self.found.limit();
     }
 
     pub(super) fn supporter(&mut self, support: &Support, track: &mut Track) {
         let rotation = self.pose.rotation.to_rotation_matrix();
         if let Some(before) = track.patches.get(track.nearest)
-            && before - track.travelled < self.limit()
+            && before - track.travelled < self.limit
         {
             self.patch(support, &rotation, track.nearest, track);
         }
         for (index, group) in support.groups.iter().enumerate() {
-            if track.groups[index] - track.travelled >= self.limit() {
+            if track.groups[index] - track.travelled >= self.limit {
                 continue;
             }
-            let at = self.to_object * group.centre;
+            let at = self.in_object(&rotation, &group.centre);
             self.queries += 1;
             let bound = self.body.field.distance(&at) - group.radius;
             if bound >= EXACT_UP_TO {
                 self.offer(bound, &at, Vector::zeros(), Obstacle::Supporter);
             }
             track.groups[index] = track.travelled + bound;
-            if bound >= self.limit() {
+            if bound >= self.limit {
                 continue;
             }
             let mut least = f32::INFINITY;
             for patch in group.patches() {
-                if track.patches[patch] - track.travelled < self.limit() {
+                if track.patches[patch] - track.travelled < self.limit {
                     self.patch(support, &rotation, patch, track);
                 }
                 least = least.min(track.patches[patch]);
@@ -99,10 +106,15 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
         }
     }
 
+    /// A point in object coordinates, by the rotation of the pose: a matrix rotates faster than a quaternion.
+    fn in_object(&self, rotation: &Rotation3<f32>, point: &Point) -> Point {
+        rotation.inverse_transform_vector(&(point - self.pose.translation.vector).coords).into()
+    }
+
     fn patch(&mut self, support: &Support, rotation: &Rotation3<f32>, patch: usize, track: &mut Track) {
-        let at = self.to_object * support.position(patch);
+        let at = self.in_object(rotation, &support.position(patch));
         self.queries += 1;
-        let before = self.limit();
+        let before = self.limit;
         let (distance, at, gradient) =
             match gap_to_patch(self.body, support, patch, (rotation, &at), before.min(PATCH_RANGE)) {
                 Gap::Near { distance, at, gradient } => (distance, at, gradient),
@@ -117,7 +129,7 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
 
     /// Looks at the scene or an object that hangs already, unless it is known to be farther away than matters.
     pub(super) fn unless_asleep(&mut self, track: &mut Track, other: usize, look: impl Fn(&mut ObjectQuery)) {
-        let limit = self.limit();
+        let limit = self.limit;
         if !track.is_awake(other, limit) {
             return;
         }
@@ -130,12 +142,12 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
         if nearest.distance < limit && self.found.takes_all() {
             look(self);
         } else if let Some(touch) = nearest.touch.filter(|touch| touch.distance < limit) {
-            self.found.offer(touch);
+            self.take(touch);
         }
     }
 
     fn limit(&self) -> f32 {
-        self.found.limit()
+        self.limit
     }
 
     pub(super) fn scene(&mut self, scene: &PointTree, radius: f32) {
@@ -175,10 +187,10 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
             if self.meter.is_some_and(|meter| meter.check_with(self.queries).is_err()) {
                 return;
             }
-            if bound >= self.limit() {
+            if bound >= self.limit {
                 continue;
             }
-            if bound + piece.radius < self.limit() {
+            if bound + piece.radius < self.limit {
                 self.queries += 1;
                 let (distance, gradient) = self.body.field.sample(&piece.centre);
                 self.offer(distance, &piece.centre, gradient, obstacle);
