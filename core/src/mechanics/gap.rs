@@ -1,6 +1,6 @@
 //! Distance of a body from one patch of the supporter.
 
-use super::constants::FIELD_BAND_RATIO;
+use super::constants::{FIELD_BAND_RATIO, HOLLOW_CURVATURE};
 use super::touch::nearest_from_sample;
 use super::{Body, Support};
 use crate::geometry::{Point, Vector};
@@ -39,12 +39,18 @@ pub(crate) fn gap_to_patch(
         // reach from its centre, is closer to the centre of another.
         return Gap::Beyond((distance - 0.5 * reach).max(band));
     }
-    let beyond = Gap::Beyond((distance - reach).max(band));
+    let least = (distance - reach).max(band);
     if distance - reach > margin {
-        return beyond;
+        return Gap::Beyond(least);
     }
     match nearest_from_sample(sample, (body, patch), rotation, at, |_| margin) {
         Ok(nearest) => Gap::Near { distance: nearest.gap, at: nearest.at, gradient: nearest.gradient },
-        Err(_) => beyond,
+        Err(travel) => Gap::Beyond((margin + travel).max(least)),
     }
+}
+
+/// Estimate of how much closer to a body than the middle of a flat piece any other point of it is, metres, within `radius` of the middle:
+/// where the gap there changes by `slope` per metre along the piece. It allows for hollows of the body.
+pub(crate) fn fall_over(radius: f32, slope: f32) -> f32 {
+    slope * radius + 0.5 * HOLLOW_CURVATURE * radius * radius
 }

@@ -31,7 +31,7 @@ pub(crate) use body::Body;
 pub(crate) use clearance::{first_within, is_deeper, is_off_surface, push_off_surface};
 pub use constants::GRAVITY;
 pub(crate) use constants::REPRESENTATIVE_SPACING;
-pub(crate) use gap::{Gap, gap_to_patch};
+pub(crate) use gap::{Gap, fall_over, gap_to_patch};
 pub(crate) use kind::kind_of;
 pub use kind::{Kind, Kinds};
 pub use margin::{Contact, DIRECTIONS, MAX_CONTACTS, Margin};

@@ -123,10 +123,19 @@ impl<'a> Support<'a> {
     /// Unit vector along the surface in the direction in which it is least curved, at the patch nearest to a point that faces as
     /// `normal`; `None` where the surface is flat or nothing faces there.
     pub(crate) fn bar_near(&self, point: &Point, normal: &Vector) -> Option<Vector> {
-        let facing = self.positions().zip(self.patches).filter(|(_, patch)| patch.faces(normal));
-        let distance = |at: &Point| (at - point).norm_squared();
-        let nearest = facing.min_by(|(a, _), (b, _)| distance(a).total_cmp(&distance(b)));
-        nearest.and_then(|(_, patch)| patch.bar_direction())
+        let (mut nearest, mut least) = (None::<&Patch>, f32::INFINITY);
+        for group in self.groups {
+            if (group.centre - point).norm() - group.radius >= libm::sqrtf(least) {
+                continue;
+            }
+            for (index, patch) in group.patches().zip(&self.patches[group.patches()]) {
+                let square = (self.position(index) - point).norm_squared();
+                if square < least && patch.faces(normal) {
+                    (nearest, least) = (Some(patch), square);
+                }
+            }
+        }
+        nearest.and_then(Patch::bar_direction)
     }
 
     /// Share of a segment from the end of a patch of a bar at which the bar meets a surface across its way, as where it is fixed to a

@@ -1,6 +1,7 @@
 //! The last word on a route: tested on the mesh itself, which has details that the distance field lacks.
 
 use super::path::MAX_CLEARANCE;
+use super::placement::Placement;
 use super::route::Route;
 use super::space::{MAX_STEPS, Space};
 use crate::mechanics::is_off_surface;
@@ -24,35 +25,35 @@ pub(super) fn certify(
 ) -> Result<Result<f32, usize>, Stop> {
     let moving = space.moving;
     let mut clearance = MAX_CLEARANCE;
+    let Some(first) = route.places().first() else { return Ok(Ok(clearance)) };
+    let Some(mut distance) = tested(space, first, meter)? else { return Ok(Err(0)) };
     for index in 0..route.legs() {
         let (from, leg) = (route.places()[index], route.leg(index));
         let travel = leg.travel(moving.reach).max(1e-9);
         let (mut share, mut steps) = (0.0, 0);
-        loop {
-            let place = from.after(&leg, share);
-            let distance = space.nearest(&place, MAX_CLEARANCE, meter)?.distance;
+        while share < 1.0 {
             clearance = clearance.min(distance);
-            if distance < NEAR
-                && let Some(body) = &moving.body
-                && (space.crosses_hung(&place, meter)?
-                    || !is_off_surface(
-                        (body, space.obstacles.support),
-                        &place.pose(&moving.centre),
-                        LEAST_DISTANCE,
-                        meter,
-                    )?)
-            {
-                return Ok(Err(index));
-            }
-            if share >= 1.0 {
-                break;
-            }
             steps += 1;
             if steps > 4 * MAX_STEPS {
                 return Ok(Err(index));
             }
             share = (share + (0.25 * distance).max(STEP) / travel).min(1.0);
+            match tested(space, &from.after(&leg, share), meter)? {
+                Some(next) => distance = next,
+                None => return Ok(Err(index)),
+            }
         }
     }
-    Ok(Ok(clearance))
+    Ok(Ok(clearance.min(distance)))
+}
+
+/// Distance from obstacles at a place, metres, at most [`MAX_CLEARANCE`]; `None` if something passes through the mesh.
+fn tested(space: &mut Space, place: &Placement, meter: &mut Meter) -> Result<Option<f32>, Stop> {
+    let distance = space.nearest(place, MAX_CLEARANCE, meter)?.distance;
+    let moving = space.moving;
+    let Some(body) = moving.body.as_ref().filter(|_| distance < NEAR) else { return Ok(Some(distance)) };
+    let pose = place.pose(&moving.centre);
+    let is_through = space.crosses_hung(place, meter)?
+        || !is_off_surface((body, space.obstacles.support), &pose, LEAST_DISTANCE, meter)?;
+    Ok((!is_through).then_some(distance))
 }

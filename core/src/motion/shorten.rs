@@ -1,6 +1,5 @@
 //! Makes a route short and smooth.
 
-use super::path::MAX_CLEARANCE;
 use super::placement::Placement;
 use super::route::Route;
 use super::space::Space;
@@ -92,10 +91,9 @@ impl Shortcut<'_, '_> {
             return Ok(false);
         }
         // In the middle a shortcut is most likely blocked.
-        let middle = self.space.nearest(&start.after(&leg, 0.5), MAX_CLEARANCE, meter)?.distance;
         let least = route.clearance(first..last + 1);
         let required = least.min(self.clearance).max(self.required);
-        if middle < required {
+        if self.space.room_beyond(&start.after(&leg, 0.5), required, meter)?.is_none() {
             return Ok(false);
         }
         let way = self.space.way(&start, &leg, required, meter)?;

@@ -61,6 +61,9 @@ pub(super) struct Space<'a> {
     /// The box that the object stays in, if there is one.
     workspace: Option<Workspace>,
     track: Track<'a>,
+    /// Where the last [`way`](Self::way) ended, and the distance from the nearest obstacle there, metres: the next one often starts
+    /// there.
+    last: Option<(Placement, f32)>,
 }
 
 /// Distance from a patch of the supporter, metres, up to which its nearest point is looked for; beyond it a bound will do.
@@ -69,7 +72,7 @@ const PATCH_RANGE: f32 = 0.003;
 const EXACT_UP_TO: f32 = 0.008;
 /// Travel between two poses that are tested at least, metres: less than what a bar is thick. What this misses, the certificate
 /// of the whole route finds.
-const LEAST_STEP: f32 = 0.001;
+const LEAST_STEP: f32 = 0.002;
 /// Most poses at which one leg of a path is tested: 5 m of it at [`LEAST_STEP`], 100 m where nothing is near. A longer leg counts
 /// as blocked. Without this limit a start a thousand kilometres away would never be reached: its steps are below the rounding of the
 /// way to it.
@@ -221,12 +224,12 @@ impl<'a> Space<'a> {
         arena: &mut Arena<'a>,
     ) -> Result<Self, OutOfMemory> {
         let track = Track::new(obstacles.support, arena)?;
-        Ok(Self { moving, obstacles, workspace, track })
+        Ok(Self { moving, obstacles, workspace, track, last: None })
     }
 
     /// A gripper without an object among obstacles.
     pub(super) fn of_gripper(moving: Moving<'a>, obstacles: Obstacles<'a>) -> Self {
-        Self { moving, obstacles, workspace: None, track: Track::none() }
+        Self { moving, obstacles, workspace: None, track: Track::none(), last: None }
     }
 
     /// Makes the points of the scene smaller where they would be in the way at poses at which they are not.
@@ -244,6 +247,18 @@ impl<'a> Space<'a> {
         let mut nearest = Nearest::within(limit);
         self.collect(at, &mut nearest, meter)?;
         Ok(nearest)
+    }
+
+    /// Distance from the nearest obstacle, metres, at most [`MAX_CLEARANCE`]; `None` if it is less than `required`.
+    pub(super) fn room_beyond(
+        &mut self,
+        at: &Placement,
+        required: f32,
+        meter: &mut Meter,
+    ) -> Result<Option<f32>, Stop> {
+        let mut nearest = Nearest { enough: required, ..Nearest::within(MAX_CLEARANCE) };
+        self.collect(at, &mut nearest, meter)?;
+        Ok(Some(nearest.distance).filter(|distance| *distance >= required))
     }
 
     /// Whether the mesh of the object crosses that of one that hangs: both have details that the distance field lacks.
@@ -322,23 +337,28 @@ impl<'a> Space<'a> {
     ) -> Result<Way, Stop> {
         let travel = leg.travel(self.moving.reach).max(1e-9);
         let mut way = Way { share: 0.0, clearance: MAX_CLEARANCE };
-        let mut share = 0.0;
+        let (mut place, mut share) = (*from, 0.0);
         for _ in 0..MAX_STEPS {
-            let place = from.after(leg, share);
             let room = self.room_at(&place);
             if room < 0.0 {
                 return Ok(way);
             }
-            let distance = self.nearest(&place, MAX_CLEARANCE, meter)?.distance;
-            if distance < required {
-                return Ok(way);
-            }
+            let known = self.last.filter(|(last, distance)| *last == place && *distance >= required);
+            let distance = match known {
+                Some((_, distance)) => distance,
+                None => match self.room_beyond(&place, required, meter)? {
+                    Some(distance) => distance,
+                    None => return Ok(way),
+                },
+            };
+            self.last = Some((place, distance));
             way = Way { share, clearance: way.clearance.min(distance) };
             if share >= 1.0 {
                 return Ok(way);
             }
             let step = (distance - 0.5 * required).min(room).max(LEAST_STEP);
             share = (share + step / travel).min(1.0);
+            place = from.after(leg, share);
         }
         Ok(way)
     }

@@ -3,8 +3,8 @@
 use super::touch::{Collector, Nearest, Touch};
 use super::track::Track;
 use super::{EXACT_UP_TO, PATCH_RANGE};
-use crate::geometry::{Aabb, Node, Point, PointTree, Pose, Surface, Vector, halves};
-use crate::mechanics::{Body, Gap, Support, gap_to_patch};
+use crate::geometry::{Aabb, Node, Point, PointTree, Pose, Surface, Vector, halves, unit_or};
+use crate::mechanics::{Body, Gap, Support, fall_over, gap_to_patch};
 use crate::monitor::Meter;
 use crate::motion::failure::{Mover, Obstacle};
 use nalgebra::Rotation3;
@@ -13,6 +13,8 @@ use nalgebra::Rotation3;
 const MAX_HALVINGS: usize = 24;
 /// Radius of a piece of a triangle that is not halved any more, metres: its corners tell its distance.
 const SMALLEST_PIECE: f32 = 0.001;
+/// The same where all that is near is told, and not only the nearest: what is as near to each other is told once.
+const SMALLEST_OF_ALL: f32 = 0.0025;
 
 /// The object at a pose.
 pub(super) struct ObjectQuery<'q, 'a> {
@@ -134,11 +136,13 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
             return;
         }
         // Farther than matters now, so that it sleeps for a while.
-        let mut nearest = Nearest::within(limit.max(EXACT_UP_TO));
+        let enough = self.found.enough();
+        let mut nearest = Nearest { enough, ..Nearest::within(limit.max(EXACT_UP_TO)) };
         let mut query = ObjectQuery::new(self.body, self.pose, &mut nearest, self.meter);
         look(&mut query);
         self.queries += query.queries;
-        track.note(other, nearest.distance);
+        // Something else may be nearer than what was enough.
+        track.note(other, if nearest.distance < enough { f32::NEG_INFINITY } else { nearest.distance });
         if nearest.distance < limit && self.found.takes_all() {
             look(self);
         } else if let Some(touch) = nearest.touch.filter(|touch| touch.distance < limit) {
@@ -180,8 +184,11 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
     /// A triangle in object coordinates. It is halved where its bounding ball alone does not tell, and the nearer half comes first.
     /// What is found is of no use where the meter stops the queries: the caller asks it next.
     fn triangle(&mut self, triangle: [Point; 3], obstacle: Obstacle) {
+        let [a, b, c] = triangle;
+        let normal = unit_or((b - a).cross(&(c - a)), Vector::zeros());
+        let smallest = if self.found.takes_all() { SMALLEST_OF_ALL } else { SMALLEST_PIECE };
         let mut waiting = heapless::Vec::<(Piece, f32), { MAX_HALVINGS + 1 }>::new();
-        let mut next = self.piece(triangle, obstacle);
+        let mut next = self.piece(triangle, &normal, obstacle);
         while let Some((piece, bound)) = next.or_else(|| waiting.pop()) {
             next = None;
             if self.meter.is_some_and(|meter| meter.check_with(self.queries).is_err()) {
@@ -190,12 +197,7 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
             if bound >= self.limit {
                 continue;
             }
-            if bound + piece.radius < self.limit {
-                self.queries += 1;
-                let (distance, gradient) = self.body.field.sample(&piece.centre);
-                self.offer(distance, &piece.centre, gradient, obstacle);
-            }
-            if piece.radius < SMALLEST_PIECE || waiting.len() + 2 > MAX_HALVINGS {
+            if piece.radius < smallest || waiting.len() + 2 > MAX_HALVINGS {
                 for corner in piece.corners {
                     self.queries += 1;
                     let (distance, gradient) = self.body.field.sample(&corner);
@@ -203,7 +205,7 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
                 }
                 continue;
             }
-            next = match halves(piece.corners).map(|half| self.piece(half, obstacle)) {
+            next = match halves(piece.corners).map(|half| self.piece(half, &normal, obstacle)) {
                 [Some(one), Some(other)] => {
                     let (near, far) = if other.1 < one.1 { (other, one) } else { (one, other) };
                     let _ = waiting.push(far);
@@ -214,19 +216,26 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
         }
     }
 
-    /// A piece of a triangle and a lower bound of its distance; `None` if it need not be looked at.
-    fn piece(&mut self, corners: [Point; 3], obstacle: Obstacle) -> Option<(Piece, f32)> {
+    /// A piece of a triangle with this unit normal, and an estimate of its distance from the one of its centre, which is offered; `None`
+    /// if the piece need not be looked at.
+    fn piece(&mut self, corners: [Point; 3], normal: &Vector, obstacle: Obstacle) -> Option<(Piece, f32)> {
         let [a, b, c] = corners;
         let centre = Point::from((a.coords + b.coords + c.coords) / 3.0);
         let radius = corners.iter().map(|corner| (corner - centre).norm()).fold(0.0, f32::max);
-        Some((Piece { corners, centre, radius }, self.bound(&centre, radius, obstacle)?))
+        self.bound(&centre, radius, obstacle)?;
+        self.queries += 1;
+        let (distance, gradient) = self.body.field.sample(&centre);
+        self.offer(distance, &centre, gradient, obstacle);
+        let slope = (gradient - normal * gradient.dot(normal)).norm();
+        let is_known = gradient != Vector::zeros() && *normal != Vector::zeros();
+        let fall = if is_known { radius.min(fall_over(radius, slope)) } else { radius };
+        (distance - fall < self.limit).then_some((Piece { corners, radius }, distance - fall))
     }
 }
 
-/// A piece of a triangle in object coordinates, with the ball around it.
+/// A piece of a triangle in object coordinates, with the radius of the ball around it.
 struct Piece {
     corners: [Point; 3],
-    centre: Point,
     /// Metres.
     radius: f32,
 }

@@ -32,6 +32,8 @@ pub(in crate::motion) trait Collector {
     fn offer(&mut self, touch: Touch);
     /// Whether it takes more than the nearest touch.
     fn takes_all(&self) -> bool;
+    /// Distance of a touch, metres, below which no other is of interest.
+    fn enough(&self) -> f32;
 }
 
 /// The nearest touch within a distance.
@@ -39,25 +41,31 @@ pub(in crate::motion) struct Nearest {
     /// Of the touch, or the limit of the search.
     pub(in crate::motion) distance: f32,
     pub(in crate::motion) touch: Option<Touch>,
+    /// Distance below which nothing nearer is looked for, metres.
+    pub(in crate::motion) enough: f32,
 }
 
 impl Nearest {
     pub(in crate::motion) fn within(limit: f32) -> Self {
-        Self { distance: limit, touch: None }
+        Self { distance: limit, touch: None, enough: f32::NEG_INFINITY }
     }
 }
 
 impl Collector for Nearest {
+    fn enough(&self) -> f32 {
+        self.enough
+    }
+
     fn takes_all(&self) -> bool {
         false
     }
 
     fn limit(&self) -> f32 {
-        self.distance
+        if self.distance < self.enough { f32::NEG_INFINITY } else { self.distance }
     }
 
     fn offer(&mut self, touch: Touch) {
-        if touch.distance < self.distance {
+        if touch.distance < self.limit() {
             (self.distance, self.touch) = (touch.distance, Some(touch));
         }
     }
@@ -84,6 +92,10 @@ impl Touches {
 }
 
 impl Collector for Touches {
+    fn enough(&self) -> f32 {
+        f32::NEG_INFINITY
+    }
+
     fn takes_all(&self) -> bool {
         true
     }
