@@ -135,6 +135,10 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
         if !track.is_awake(other, limit) {
             return;
         }
+        if self.found.takes_all() {
+            look(self);
+            return;
+        }
         // Farther than matters now, so that it sleeps for a while.
         let enough = self.found.enough();
         let mut nearest = Nearest { enough, ..Nearest::within(limit.max(EXACT_UP_TO)) };
@@ -143,9 +147,7 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
         self.queries += query.queries;
         // Something else may be nearer than what was enough.
         track.note(other, if nearest.distance < enough { f32::NEG_INFINITY } else { nearest.distance });
-        if nearest.distance < limit && self.found.takes_all() {
-            look(self);
-        } else if let Some(touch) = nearest.touch.filter(|touch| touch.distance < limit) {
+        if let Some(touch) = nearest.touch.filter(|touch| touch.distance < limit) {
             self.take(touch);
         }
     }
@@ -216,20 +218,25 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
         }
     }
 
-    /// A piece of a triangle with this unit normal, and an estimate of its distance from the one of its centre, which is offered; `None`
+    /// A piece of a triangle with this unit normal, and a lower bound of its distance or, for all that is near, an estimate; `None`
     /// if the piece need not be looked at.
     fn piece(&mut self, corners: [Point; 3], normal: &Vector, obstacle: Obstacle) -> Option<(Piece, f32)> {
         let [a, b, c] = corners;
         let centre = Point::from((a.coords + b.coords + c.coords) / 3.0);
         let radius = corners.iter().map(|corner| (corner - centre).norm()).fold(0.0, f32::max);
-        self.bound(&centre, radius, obstacle)?;
-        self.queries += 1;
-        let (distance, gradient) = self.body.field.sample(&centre);
-        self.offer(distance, &centre, gradient, obstacle);
-        let slope = (gradient - normal * gradient.dot(normal)).norm();
-        let is_known = gradient != Vector::zeros() && *normal != Vector::zeros();
-        let fall = if is_known { radius.min(fall_over(radius, slope)) } else { radius };
-        (distance - fall < self.limit).then_some((Piece { corners, radius }, distance - fall))
+        let mut least = self.bound(&centre, radius, obstacle)?;
+        let takes_all = self.found.takes_all();
+        if takes_all || least + radius < self.limit {
+            self.queries += 1;
+            let (distance, gradient) = self.body.field.sample(&centre);
+            self.offer(distance, &centre, gradient, obstacle);
+            // What is told of all that is near is an estimate anyway: where it is first.
+            if takes_all && gradient != Vector::zeros() && *normal != Vector::zeros() {
+                let slope = (gradient - normal * gradient.dot(normal)).norm();
+                least = least.max(distance - fall_over(radius, slope));
+            }
+        }
+        (least < self.limit).then_some((Piece { corners, radius }, least))
     }
 }
 
