@@ -128,7 +128,7 @@ impl<'a> Support<'a> {
             if (group.centre - point).norm() - group.radius >= libm::sqrtf(least) {
                 continue;
             }
-            for (index, patch) in group.patches().zip(&self.patches[group.patches()]) {
+            for (index, patch) in group.patches().zip(self.patches.get(group.patches()).unwrap_or_default()) {
                 let square = (self.position(index) - point).norm_squared();
                 if square < least && patch.faces(normal) {
                     (nearest, least) = (Some(patch), square);
