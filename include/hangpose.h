@@ -986,11 +986,10 @@ typedef struct hangpose_plan {
   // With hangpose_predict_reachable the index of the pose for which the path was planned, HANGPOSE_NO_INDEX if there is
   // no pose; else 0.
   uint32_t pose_index;
-  // Number of waypoints of the object, at the front of the array: from the start to the release pose, and on to the rest
-  // pose, or to where the supporter is 0.3 mm inside the mesh, or 0.1 mm from a part that is thinner than 2.5 mm, before that;
-  // with hangpose_motion.take_off the other way.
+  // Number of waypoints of the object, at the front of the array: from the start to the release pose, and on towards the rest
+  // pose, to where the object is 0.3 mm from the supporter; with hangpose_motion.take_off the other way.
   uint32_t waypoint_count;
-  // Index of the release pose. The waypoints between it and the rest pose lower the object into contact.
+  // Index of the release pose. The waypoints after it lower the object until it nearly touches.
   uint32_t release;
   // Number of waypoints of the opened gripper, after those of the object: away from it once it rests; with
   // hangpose_motion.take_off towards it, before it moves. 0 without a gripper.

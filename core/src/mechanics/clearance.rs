@@ -2,12 +2,11 @@
 
 use super::constants::{
     BAR_TO_SURFACE, FIELD_BAND_RATIO, FIELD_ERROR, MAX_PUSHES_OFF, PATCH_PENETRATION, PUSH_OFF_EXCESS,
-    REPRESENTATIVE_SPACING,
 };
 use super::patch::Patch;
 use super::touch::nearest_on_patch;
 use super::{Body, Support};
-use crate::geometry::{Point, Pose, Surface, Vector, unit_or};
+use crate::geometry::{Point, Pose, Vector, unit_or};
 use crate::monitor::{Meter, Stop};
 use core::cell::Cell;
 
@@ -81,13 +80,12 @@ pub(crate) fn push_off_surface(
     Ok(None)
 }
 
-/// Whether a point of the supporter is deeper than `depth` metres inside the mesh at `pose`, exactly, or closer than `thin_gap` metres to
-/// a part that is thinner than what is between the points, where its surface bulges. Points half way between those of the cloud are tested
-/// as well.
-pub(crate) fn is_deeper(
+/// Whether a point of the supporter is closer than `gap` metres to the mesh at `pose`, or inside it, exactly. Points half way between
+/// those of the cloud are tested as well.
+pub(crate) fn is_closer(
     (body, support): (&Body, &Support),
     pose: &Pose,
-    (depth, thin_gap): (f32, f32),
+    gap: f32,
     meter: &mut Meter,
 ) -> Result<bool, Stop> {
     let (field, surface) = (body.field, body.surface);
@@ -99,43 +97,32 @@ pub(crate) fn is_deeper(
         let aabb = node.aabb();
         let (centre, radius) = (to_object * aabb.centre(), 0.5 * aabb.diagonal());
         queries += 1;
-        if found || body.is_beyond(&centre, radius) {
+        if found || body.is_beyond(&centre, radius + gap) {
             return false;
         }
         // The field may miss thin parts.
         let is_missed = field.distance(&centre) > radius + near;
-        if is_missed && !surface.is_within(&centre, radius + thin_gap) {
+        if is_missed && !surface.is_within(&centre, radius + gap) {
             return false;
         }
         let Some(items) = node.items() else { return true };
-        let mut is_deep = |point: &Point| {
+        let mut is_close = |point: &Point| {
             queries += 1;
             let at = to_object * point;
-            if field.distance(&at) >= near && !surface.is_within(&at, near) {
-                return false;
-            }
-            let distance = surface.signed_distance(&at);
-            distance < -depth || distance < thin_gap && is_thin_at(surface, &at, distance)
+            surface.is_within(&at, gap) || field.distance(&at) < near && surface.is_inside(&at)
         };
-        found = support.tree.points().get(items.clone()).unwrap_or_default().iter().any(&mut is_deep)
+        found = support.tree.points().get(items.clone()).unwrap_or_default().iter().any(&mut is_close)
             || support.patches_of(&items).any(|patch| {
                 let position = support.position(patch);
                 support
                     .patches
                     .get(patch)
-                    .is_some_and(|of_it| of_it.half_way_out().any(|offset| is_deep(&(position + offset))))
+                    .is_some_and(|of_it| of_it.half_way_out().any(|offset| is_close(&(position + offset))))
             });
         true
     });
     meter.distance_queries(queries)?;
     Ok(found)
-}
-
-/// Whether the mesh is thinner than the spacing of patches where it is nearest to a point, `distance` metres away: negative inside.
-fn is_thin_at(surface: &Surface, point: &Point, distance: f32) -> bool {
-    let nearest = surface.closest_point(point);
-    let outwards = unit_or((point - nearest) * distance.signum(), Vector::zeros());
-    surface.signed_distance(&(nearest - outwards * REPRESENTATIVE_SPACING)) > 0.0
 }
 
 /// A point of the supporter that contradicts [`is_off_surface`], where bars are taken to reach surfaces that are `beyond` metres from

@@ -28,7 +28,7 @@ mod touch;
 mod unseen;
 
 pub(crate) use body::Body;
-pub(crate) use clearance::{first_within, is_deeper, is_off_surface, push_off_surface};
+pub(crate) use clearance::{first_within, is_closer, is_off_surface, push_off_surface};
 pub use constants::GRAVITY;
 pub(crate) use constants::REPRESENTATIVE_SPACING;
 pub(crate) use gap::{Gap, fall_over, gap_to_patch};

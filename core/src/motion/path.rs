@@ -24,11 +24,10 @@ impl Default for Waypoint {
 /// object turns about a fixed axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Path<'w> {
-    /// Poses of the object. To hang it: from the start to the release pose, and on to the rest pose, or to where the supporter is
-    /// 0.3 mm inside the mesh of the object, or 0.1 mm from a part that is thinner than 2.5 mm, before that. To take it off: the
-    /// other way.
+    /// Poses of the object. To hang it: from the start to the release pose, and on towards the rest pose, to where the object is 0.3 mm
+    /// from the supporter. To take it off: the other way.
     pub object: &'w [Waypoint],
-    /// Index in `object` of the release pose; the waypoints between it and the rest pose lower the object into contact.
+    /// Index in `object` of the release pose; the waypoints after it lower the object until it nearly touches.
     pub release: usize,
     /// Poses of the opened gripper relative to the supporter: after the object rests, away from it; to take the object off,
     /// towards it and before the object moves. Empty without a gripper.

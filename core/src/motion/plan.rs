@@ -168,7 +168,7 @@ impl<'a> Planner<'_, 'a, '_> {
         let mut written = Written { waypoints, count: 0, step: motion.step };
         written.route(&room.short, &body.centre);
         let release_index = written.count - 1;
-        let lowering = until_contact(&space, &release, release.leg_to(&resting), self.meter)?;
+        let lowering = until_contact(&mut space, &release, release.leg_to(&resting), self.meter)?;
         written.leg(&release, &lowering, &body.centre);
         let lowered = release.after(&lowering, 1.0).pose(&body.centre);
         let object = written.count;
