@@ -68,7 +68,7 @@ pub(crate) enum Command {
     Predict(Box<PredictArguments>),
     /// Plan a path without collisions to a pose in which the object hangs, or away from it.
     ///
-    /// The path leads from the start over the release pose to the rest pose. Its poses map object coordinates to supporter
+    /// The path leads from the start over the release pose to 0.3 mm before contact. Its poses map object coordinates to supporter
     /// coordinates. Both frames are in metres with z up, after the options for scale and up axis are applied.
     ///
     /// Exit status: 0 a path was found, 3 there is no path (the JSON gives the reason), 1 bad input, 2 bad usage.

@@ -11,7 +11,7 @@ pub(super) const MAX_WAYPOINTS: usize = 100_000;
 /// A path in the JSON, its poses in the supporter frame.
 #[derive(Clone, Serialize)]
 pub(super) struct Path {
-    /// Poses of the object, from the start to the rest pose, or the other way.
+    /// Poses of the object, from the start to just before the rest pose, or the other way.
     waypoints: Vec<Waypoint>,
     /// Index of the release pose.
     release: usize,

@@ -38,13 +38,14 @@ fn len(list: &Value) -> usize {
     list.as_array().unwrap().len()
 }
 
-/// Asserts that a path leads over the release pose to the rest pose, in small steps and forwards in time.
+/// Asserts that a path leads over the release pose to just before the rest pose, in small steps and forwards in time.
 #[track_caller]
 fn assert_leads_to(path: &Value, pose: &Value) {
     let (count, release) = (len(&path["waypoints"]), path["release"].as_u64().unwrap() as usize);
     assert!(release < count && number(&path["clearance"]) > 0.0, "{path}");
     assert!(distance(at(path, release), numbers(&pose["position"])) < 1e-5);
-    assert!(distance(at(path, count - 1), rest_position(pose)) < 1e-5);
+    let left = distance(at(path, count - 1), rest_position(pose));
+    assert!((0.0001..0.0006).contains(&left), "{left}");
     for waypoints in path["waypoints"].as_array().unwrap().windows(2) {
         let [a, b] = [&waypoints[0], &waypoints[1]];
         assert!(number(&a["seconds"]) < number(&b["seconds"]));
@@ -163,7 +164,7 @@ fn a_pose_of_ones_own_has_a_path() {
     assert!(distance(at(path, 0), [0.0, 0.3, 0.1]) < 1e-6);
     assert_leads_to(path, &best);
     let back = &plan(&scene, &file, &[start[0], start[1], "--take-off"]).json()["path"];
-    assert!(distance(at(back, 0), rest_position(&best)) < 1e-5);
+    assert!(distance(at(back, 0), at(path, len(&path["waypoints"]) - 1)) < 1e-6);
     assert!(distance(at(back, len(&back["waypoints"]) - 1), [0.0, 0.3, 0.1]) < 1e-6);
 }
 
@@ -178,10 +179,10 @@ fn the_gripper_leaves() {
     assert_leads_to(path, &best);
     let hand = path["gripper"].as_array().unwrap();
     let (first, last) = (&hand[0], hand.last().unwrap());
-    assert!(distance(numbers(&first["position"]), rest_position(&best)) < 1e-5);
-    let left = distance(numbers(&last["position"]), rest_position(&best));
-    assert!((left - 0.2).abs() < 1e-4, "the retreat is free: {left}");
     let end = &path["waypoints"][len(&path["waypoints"]) - 1];
+    assert!(distance(numbers(&first["position"]), numbers(&end["position"])) < 1e-6);
+    let left = distance(numbers(&last["position"]), numbers(&first["position"]));
+    assert!((left - 0.2).abs() < 1e-4, "the retreat is free: {left}");
     assert!(number(&first["seconds"]) >= number(&end["seconds"]));
 }
 
