@@ -128,16 +128,14 @@ impl Patch {
 
     /// Unit vector along the bar of which the patch is a part; `None` if the surface is hardly more curved across than along.
     pub(super) fn bar_direction(&self) -> Option<Vector> {
-        let [forwards, backwards, right, left] = self.curvatures;
-        let (along, across) = (0.5 * (forwards + backwards), 0.5 * (right + left));
+        let [forwards, backwards, ..] = self.curvatures;
+        let (along, across) = (0.5 * (forwards + backwards), self.curvature_across());
         (self.is_wire() || across > BAR_CURVATURE + along.abs()).then_some(self.along)
     }
 
-    /// Radius of the curvature across, metres; infinite where the surface is flat or hollow.
-    pub(super) fn radius_across(&self) -> f32 {
-        let [_, _, right, left] = self.curvatures;
-        let mean = 0.5 * (right + left);
-        if mean > 0.0 { 1.0 / mean } else { f32::INFINITY }
+    /// Mean curvature across, 1/m.
+    pub(super) fn curvature_across(&self) -> f32 {
+        0.5 * (self.curvatures[2] + self.curvatures[3])
     }
 
     /// Unit vectors along, across and normal to the patch.

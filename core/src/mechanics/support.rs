@@ -143,7 +143,7 @@ impl<'a> Support<'a> {
     pub(crate) fn fixed_at(&self, bar: &Patch, from: &Point, to: &Point) -> Option<f32> {
         let way = unit_or(to - from, Vector::zeros());
         // Half way to its axis, where it meets the face of its end.
-        let inwards = bar.normal * (0.5 * bar.radius_across());
+        let inwards = bar.normal * (0.5 / bar.curvature_across());
         let (from, to) = (from - inwards, to - inwards);
         let (mut fixed, mut end) = (None::<f32>, f32::INFINITY);
         for (at, patch) in self.positions().zip(self.patches) {

@@ -18,7 +18,7 @@ const MAX_STEPS: usize = 16;
 const HALVINGS: usize = 5;
 
 /// The part of `lowering`, the way from the release pose to the rest pose, at the end of which the object nearly touches.
-pub(super) fn until_contact(
+pub(super) fn until_near(
     space: &mut Space,
     release: &Placement,
     lowering: Leg,
@@ -29,7 +29,7 @@ pub(super) fn until_contact(
     let mut is_close = |share: f32| {
         let place = release.after(&lowering, share);
         let pose = place.pose(&space.moving.centre);
-        Ok(space.room_beyond(&place, GAP, meter)?.is_none()
+        Ok(space.distance_if_free(&place, GAP, meter)?.is_none()
             || is_closer((&body, space.obstacles.support), &pose, GAP, meter)?)
     };
     let steps = (libm::ceilf(travel / STEP) as usize).clamp(1, MAX_STEPS);

@@ -9,7 +9,7 @@ use super::exits::{box_around, outside};
 use super::failure::PlanFailure;
 use super::gripper::Gripper;
 use super::leave::{open, straight};
-use super::lower::until_contact;
+use super::lower::until_near;
 use super::path::{MAX_CLEARANCE, Outline, Plan, PlanCounts, Shape, Waypoint};
 use super::permit::Permit;
 use super::placement::Placement;
@@ -168,7 +168,7 @@ impl<'a> Planner<'_, 'a, '_> {
         let mut written = Written { waypoints, count: 0, step: motion.step };
         written.route(&room.short, &body.centre);
         let release_index = written.count - 1;
-        let lowering = until_contact(&mut space, &release, release.leg_to(&resting), self.meter)?;
+        let lowering = until_near(&mut space, &release, release.leg_to(&resting), self.meter)?;
         written.leg(&release, &lowering, &body.centre);
         let lowered = release.after(&lowering, 1.0).pose(&body.centre);
         let object = written.count;

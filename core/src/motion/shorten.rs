@@ -93,7 +93,7 @@ impl Shortcut<'_, '_> {
         // In the middle a shortcut is most likely blocked.
         let least = route.clearance(first..last + 1);
         let required = least.min(self.clearance).max(self.required);
-        if self.space.room_beyond(&start.after(&leg, 0.5), required, meter)?.is_none() {
+        if self.space.distance_if_free(&start.after(&leg, 0.5), required, meter)?.is_none() {
             return Ok(false);
         }
         let way = self.space.way(&start, &leg, required, meter)?;

@@ -144,7 +144,7 @@ fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
 }
 
 #[test]
-fn a_path_leads_over_the_release_pose_to_the_rest_pose() {
+fn a_path_leads_over_the_release_pose_to_just_before_the_rest_pose() {
     let (scene, asked) = (Scene::new(), Asked::new());
     let planned = scene.predict_reachable(&asked);
     assert_eq!(planned.status, HANGPOSE_OK, "{}", planned.message());
@@ -154,7 +154,8 @@ fn a_path_leads_over_the_release_pose_to_the_rest_pose() {
     assert!(planned.plan.clearance > 0.0);
     let (release, last) = (&object[planned.plan.release as usize], object.last().unwrap());
     assert!(distance(release.position, pose.position) < 1e-5);
-    assert!(distance(last.position, pose.rest_position) < 1e-5);
+    let left = distance(last.position, pose.rest_position);
+    assert!((0.0001..0.0006).contains(&left), "{left}");
     assert_eq!(object[0].seconds, 0.0);
     assert!(object.windows(2).all(|pair| pair[0].seconds < pair[1].seconds));
     for (index, failure) in planned.failures.iter().enumerate() {
@@ -201,12 +202,13 @@ fn the_way_back_ends_where_it_is_asked_to() {
     assert_eq!(planned.status, HANGPOSE_OK, "{}", planned.message());
     let pose = &planned.poses[planned.plan.pose_index as usize];
     let (object, gripper) = planned.path();
-    assert!(distance(object[0].position, pose.rest_position) < 1e-5);
+    let left = distance(object[0].position, pose.rest_position);
+    assert!((0.0001..0.0006).contains(&left), "{left}");
     assert!(distance(object[planned.plan.release as usize].position, pose.position) < 1e-5);
     assert!(distance(object.last().unwrap().position, asked.motion.start_position) < 1e-5);
     let arrived = gripper.last().unwrap();
     assert!(arrived.seconds <= object[0].seconds && gripper[0].seconds == 0.0);
-    assert!(distance(arrived.position, pose.rest_position) < 1e-5);
+    assert!(distance(arrived.position, object[0].position) < 1e-6);
 }
 
 unsafe extern "C" fn refuse(_: *mut c_void, _: *const f32, _: *const f32) -> i32 {

@@ -70,8 +70,9 @@ pub(super) struct Space<'a> {
 const PATCH_RANGE: f32 = 0.003;
 /// Distance beyond which a lower bound is as good as the distance, metres: a step of this length is long.
 const EXACT_UP_TO: f32 = 0.008;
-/// Travel between two poses that are tested at least, metres: less than what a bar is thick. What this misses, the certificate
-/// of the whole route finds.
+/// Travel between two poses that are tested at least, metres: less than what a bar is thick. What this misses, the certificate of the
+/// whole route finds. With 1, 2 and 3 mm 243, 249 and 245 of 253 paths are found, in 24, 21 and 17 ms in the median
+/// (`reach --pairs 44 --trees 0 --enclosed 0` with `--seed 53 --scene nothing,wall` and `--seed 55 --scene nothing,shelf`).
 const LEAST_STEP: f32 = 0.002;
 /// Most poses at which one leg of a path is tested: 5 m of it at [`LEAST_STEP`], 100 m where nothing is near. A longer leg counts
 /// as blocked. Without this limit a start a thousand kilometres away would never be reached: its steps are below the rounding of the
@@ -250,7 +251,7 @@ impl<'a> Space<'a> {
     }
 
     /// Distance from the nearest obstacle, metres, at most [`MAX_CLEARANCE`]; `None` if it is less than `required`.
-    pub(super) fn room_beyond(
+    pub(super) fn distance_if_free(
         &mut self,
         at: &Placement,
         required: f32,
@@ -346,7 +347,7 @@ impl<'a> Space<'a> {
             let known = self.last.filter(|(last, distance)| *last == place && *distance >= required);
             let distance = match known {
                 Some((_, distance)) => distance,
-                None => match self.room_beyond(&place, required, meter)? {
+                None => match self.distance_if_free(&place, required, meter)? {
                     Some(distance) => distance,
                     None => return Ok(way),
                 },
