@@ -80,8 +80,10 @@ def test_a_way_there_and_back(prediction: hangpose.Prediction) -> None:
     there = hangpose.plan(prediction.object, prediction.supporter, prediction.best)
     back = hangpose.plan(prediction.object, prediction.supporter, prediction.best, take_off=True)
     assert prediction.best is not None
-    assert np.abs(there.poses[-1] - prediction.best.rest).max() < 1e-5
-    assert np.abs(back.poses[0] - prediction.best.rest).max() < 1e-5
+    # It ends 0.3 mm before contact; the release pose is 4 mm away.
+    left = np.linalg.norm(there.poses[-1][:3, 3] - prediction.best.rest[:3, 3])
+    assert 0.0001 < left < 0.001
+    assert np.abs(back.poses[0] - there.poses[-1]).max() < 1e-6
     assert there.seconds[0] == 0 and (np.diff(there.seconds) > 0).all()
     assert "waypoints" in repr(there)
 
