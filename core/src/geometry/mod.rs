@@ -17,7 +17,7 @@ mod symmetry;
 mod vector;
 
 pub use distance_field::DistanceField;
-pub(crate) use queries::{Bvh, Nearest, Node, PointTreeSlots};
+pub(crate) use queries::{Nearest, Node, PointTreeSlots};
 pub use queries::{Neighbour, PointTree, Surface, hull};
 pub use shapes::{Aabb, Cloud, CloudError, MAX_COUNT, MassProperties, Mesh, MeshError};
 pub(crate) use shapes::{closest_point_on_triangle, halves, scaled_normal};

@@ -44,12 +44,6 @@ pub(crate) struct Group {
 }
 
 impl Group {
-    /// Box around the bounding sphere.
-    pub(crate) fn aabb(&self) -> Aabb {
-        let reach = Vector::repeat(self.radius);
-        Aabb { min: self.centre - reach, max: self.centre + reach }
-    }
-
     /// Indices of the patches.
     pub(crate) fn patches(&self) -> Range<usize> {
         self.first as usize..(self.first + self.count) as usize

@@ -23,8 +23,8 @@ impl<'m> Clearance<'m> {
     /// Bytes of memory: a supporter within `limits` and `scene` points of a scene.
     pub const fn bytes(limits: &Limits, scene: usize) -> usize {
         model_bytes(
-            Obstacles::bytes(limits.points, scene)
-                .saturating_add(Obstacles::scratch_bytes(limits.points, scene))
+            Obstacles::bytes(scene)
+                .saturating_add(Obstacles::scratch_bytes(scene))
                 .saturating_add(Space::bytes(limits.points)),
         )
     }

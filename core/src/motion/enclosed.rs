@@ -49,10 +49,8 @@ const DEPTH: f32 = 0.001;
 
 /// Bytes of working memory for a supporter of at most `points`.
 pub(super) const fn bytes(points: usize) -> usize {
-    let points = far_side::max_points(points);
     let of_object = array_bytes::<Cell>(CELLS * CELLS * CELLS).saturating_add(array_bytes::<u32>(MAX_CELLS));
-    let of_supporter = array_bytes::<i8>(points).saturating_add(array_bytes::<u32>(points));
-    larger(of_object, of_supporter)
+    larger(of_object, array_bytes::<i8>(far_side::max_points(points)))
 }
 
 /// Whether object and supporter are linked at a placement at which they touch, or nearly so. Returns the width of the gaps that are
@@ -66,7 +64,8 @@ pub(super) fn link(
     let mut touches = Touches::within(TOUCH_RANGE);
     space.collect(at, &mut touches, meter)?;
     let (support, pose) = (space.obstacles.support, &at.pose(&space.moving.centre));
-    let Some(body) = &space.moving.body else { return Ok(None) };
+    let Some(body) = space.moving.body else { return Ok(None) };
+    let queue = space.lend();
     let reach = (LINK * spacing_of(&support.tree)).max(LEAST_REACH);
     if reach > COARSEST {
         return Ok(None);
@@ -77,18 +76,18 @@ pub(super) fn link(
         let Some(bar) = support.bar_near(&touch.at, &touch.normal) else { continue };
         for cell in LARGEST_CELLS {
             let mut curve = Curve::new();
-            let grid = Grid::around(body, &(to_object * touch.at), cell);
+            let grid = Grid::around(&body, &(to_object * touch.at), cell);
             if !grid.curve_around(pose, touch, &bar, &mut curve, arena.scratch(), meter)? {
                 continue;
             }
-            let thick = curve.iter().filter(|point| is_thick(body, &(to_object * **point), reach)).count();
+            let thick = curve.iter().filter(|point| is_thick(&body, &(to_object * **point), reach)).count();
             if thick as f32 >= MOST * curve.len() as f32
                 && goes_through(
                     support,
                     touch,
                     (reach, &is_outside),
                     (&curve, grid.cell),
-                    arena.scratch(),
+                    (queue, arena.scratch()),
                     meter,
                 )?
             {
@@ -274,20 +273,19 @@ fn turn([x, y]: [f32; 2], [u, v]: [f32; 2]) -> i8 {
     }
 }
 
-/// Whether a closed way along patches of the supporter goes through a closed curve, which is exact to a cell. Its steps are of at most `reach` metres, and
-/// outside of the object.
+/// Whether a closed way along patches of the supporter goes through a closed curve, which is exact to a cell. Its steps are of at most
+/// `reach` metres, and outside of the object. `queue` has a slot for each patch.
 fn goes_through(
     support: &Support,
     touch: &Touch,
     (reach, is_outside): (f32, &dyn Fn(&Point) -> bool),
     (curve, cell): (&[Point], f32),
-    arena: Arena,
+    (queue, mut arena): (&mut [u32], Arena),
     meter: &mut Meter,
 ) -> Result<bool, End> {
     const UNKNOWN: i8 = i8::MIN;
-    let (mut arena, tree, patches) = (arena, &support.tree, support.patches);
+    let (tree, patches) = (&support.tree, support.patches);
     let passes = arena.unset::<i8>(patches.len())?;
-    let queue = arena.unset::<u32>(patches.len())?;
     passes.fill(UNKNOWN);
     let sum: Vector = curve.iter().map(|point| point.coords).sum();
     let disc = Disc { curve, apex: Point::from(sum / curve.len() as f32), aabb: Aabb::of(curve) };
@@ -432,7 +430,8 @@ mod tests {
             mover: Mover::Object,
             obstacle: Obstacle::Supporter,
         };
-        goes_through(&support, &touch, (0.01, &|_| true), (&curve, 0.005), arena, &mut meter).ok().unwrap()
+        let memory = (&mut vec![0; count][..], arena);
+        goes_through(&support, &touch, (0.01, &|_| true), (&curve, 0.005), memory, &mut meter).ok().unwrap()
     }
 
     #[test]

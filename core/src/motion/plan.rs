@@ -49,8 +49,8 @@ pub const fn plan_bytes(limits: &Limits, scene: usize, nodes: usize) -> usize {
     let search = Space::bytes(limits.points)
         .saturating_add(Room::bytes(nodes))
         .saturating_add(enclosed::bytes(limits.points));
-    let scratch = larger(Obstacles::scratch_bytes(limits.points, scene), search);
-    model_bytes(Obstacles::bytes(limits.points, scene).saturating_add(scratch))
+    let scratch = larger(Obstacles::scratch_bytes(scene), search);
+    model_bytes(Obstacles::bytes(scene).saturating_add(scratch))
 }
 
 /// Plans a path of the object to `goal`, and of the gripper away from it; or, to take it off, the other way.

@@ -54,9 +54,16 @@ impl Replayed {
         [way, lowering, held, leaving].into_iter().fold(0.0, |deepest, it| it.depth.max(deepest))
     }
 
+    /// Whether the object holds when it is let go. That it came there freely shows that it is neither wedged nor runs through the
+    /// supporter, which is what [`Verdict::honest`] is for: an object in a hole with less than 2 mm of play is told to be honest by
+    /// chance alone.
+    pub fn hangs(&self) -> bool {
+        self.verdict.clear && self.verdict.holds
+    }
+
     /// Whether nothing is deeper than 1 mm and the object hangs.
     pub fn passes(&self) -> bool {
-        self.depth() <= DEEPEST && self.verdict.success()
+        self.depth() <= DEEPEST && self.hangs()
     }
 }
 

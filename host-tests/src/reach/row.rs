@@ -102,6 +102,8 @@ pub struct Outcome {
     pub leaving: [f64; 2],
     /// Whether the object hangs when it is let go at the end; `None` if it need not.
     pub hangs: Option<bool>,
+    /// Whether it also comes free when gravity is reversed there.
+    pub comes_free: bool,
     /// Whether nothing is deeper than 1 mm and the object hangs.
     pub passes: bool,
 }
@@ -117,8 +119,8 @@ impl From<&Replayed> for Outcome {
     fn from(replayed: &Replayed) -> Self {
         let Replayed { way, lowering, held, leaving, .. } = replayed;
         let [way, lowering, held, leaving] = [way, lowering, held, leaving].map(|it| [it.depth, it.at]);
-        let hangs = Some(replayed.verdict.success());
-        Self { way, lowering, held, leaving, hangs, passes: replayed.passes() }
+        let (hangs, comes_free) = (Some(replayed.hangs()), replayed.verdict.honest);
+        Self { way, lowering, held, leaving, hangs, comes_free, passes: replayed.passes() }
     }
 }
 

@@ -7,7 +7,7 @@ mod point_tree;
 mod ray;
 mod surface;
 
-pub(crate) use bvh::{Bvh, Node};
+pub(crate) use bvh::Node;
 pub(crate) use point_tree::{Nearest, PointTreeSlots};
 pub use point_tree::{Neighbour, PointTree};
 pub use surface::Surface;

@@ -1,8 +1,8 @@
 //! Distances of the parts of a gripper from what stands still.
 
-use super::Obstacles;
 use super::touch::{Collector, Touch};
 use crate::geometry::{DistanceField, Point, PointTree, Pose, Vector, unit_or};
+use crate::mechanics::Support;
 use crate::motion::failure::{Mover, Obstacle};
 use crate::motion::gripper::{Capsule, Gripper};
 
@@ -80,26 +80,23 @@ impl<'q, C: Collector> CapsuleQuery<'q, C> {
     }
 
     /// The supporter, each patch as a ball: a gripper needs no better.
-    pub(super) fn supporter(&mut self, obstacles: &Obstacles) {
-        let support = obstacles.support;
-        let Some(tree) = obstacles.groups else { return };
-        tree.descend(|_, node| {
-            let aabb = node.aabb();
-            if self.is_beyond(&aabb.centre(), 0.5 * aabb.diagonal()) {
-                return false;
+    pub(super) fn supporter(&mut self, support: &Support) {
+        let middle = nalgebra::center(&self.from, &self.to);
+        let half = 0.5 * (self.to - self.from).norm();
+        for group in support.groups {
+            // Most are beyond the ball around the segment, which costs less to tell.
+            let limit = half + group.radius + self.radius + self.found.limit();
+            if (group.centre - middle).norm_squared() > limit * limit
+                || self.is_beyond(&group.centre, group.radius)
+            {
+                continue;
             }
-            let Some(items) = node.items() else { return true };
-            for &group in &obstacles.group_order[items] {
-                let group = &support.groups[group as usize];
-                if self.is_beyond(&group.centre, group.radius) {
-                    continue;
-                }
-                for patch in group.patches() {
-                    self.ball(&support.position(patch), support.patches[patch].reach(), Obstacle::Supporter);
-                }
+            for (patch, shape) in
+                group.patches().zip(support.patches.get(group.patches()).unwrap_or_default())
+            {
+                self.ball(&support.position(patch), shape.reach(), Obstacle::Supporter);
             }
-            true
-        });
+        }
     }
 
     pub(super) fn scene(&mut self, scene: &PointTree, radius: f32) {

@@ -19,12 +19,11 @@ use super::gripper::Gripper;
 use super::path::MAX_CLEARANCE;
 use super::placement::{Leg, Placement};
 use super::task::Task;
-use crate::geometry::{Aabb, Bvh, Neighbour, Node, Point, PointTree, PointTreeSlots, Pose};
+use crate::geometry::{Aabb, Neighbour, Point, PointTree, PointTreeSlots, Pose};
 use crate::hanging::Hung;
 use crate::mechanics::{Body, Support};
-use crate::memory::{Arena, OutOfMemory, array_bytes, larger};
+use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop, Unfinished};
-use crate::perception::far_side;
 
 /// What moves: an object, a gripper, or an object in a gripper.
 #[derive(Clone, Copy)]
@@ -43,9 +42,6 @@ pub(super) struct Moving<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Obstacles<'a> {
     pub(super) support: &'a Support<'a>,
-    /// Over the groups of the supporter's patches.
-    groups: Option<Bvh<'a>>,
-    group_order: &'a [u32],
     scene: Option<PointTree<'a>>,
     /// Radius of the points of the scene, metres, so that nothing slips through between them.
     scene_radius: f32,
@@ -86,11 +82,6 @@ const SPACING_RATIO: f32 = 0.75;
 /// Largest radius of the points of a scene, metres. Sparser scenes have gaps.
 const MAX_SCENE_RADIUS: f32 = 0.01;
 
-/// Groups of patches of a supporter of at most `points`.
-const fn max_groups(points: usize) -> usize {
-    Support::max_groups(far_side::max_points(points))
-}
-
 impl<'a> Moving<'a> {
     /// The object, in the gripper if there is one.
     pub(super) fn held(body: Body<'a>, gripper: Option<Gripper<'a>>) -> Self {
@@ -108,18 +99,14 @@ impl<'a> Moving<'a> {
 }
 
 impl<'a> Obstacles<'a> {
-    /// Bytes for a supporter of at most `points` and `scene` points.
-    pub(super) const fn bytes(points: usize, scene: usize) -> usize {
-        let groups = max_groups(points);
-        array_bytes::<u32>(groups)
-            .saturating_add(array_bytes::<Node>(Bvh::max_nodes(groups)))
-            .saturating_add(PointTree::bytes(scene))
+    /// Bytes for at most `scene` points.
+    pub(super) const fn bytes(scene: usize) -> usize {
+        PointTree::bytes(scene)
     }
 
     /// Bytes of working memory for [`build`](Self::build).
-    pub(super) const fn scratch_bytes(points: usize, scene: usize) -> usize {
-        let of_scene = array_bytes::<Point>(scene).saturating_add(array_bytes::<u32>(scene));
-        larger(array_bytes::<Point>(max_groups(points).saturating_mul(2)), of_scene)
+    pub(super) const fn scratch_bytes(scene: usize) -> usize {
+        array_bytes::<Point>(scene).saturating_add(array_bytes::<u32>(scene))
     }
 
     /// Arranges the obstacles of a task for queries. Of the scene, only points in `region` matter.
@@ -130,24 +117,6 @@ impl<'a> Obstacles<'a> {
         meter: &Meter,
     ) -> Result<Self, Unfinished> {
         let (support, scene) = (task.supporter.support(), task.request.scene);
-        let groups = support.groups;
-        let order = arena.unset::<u32>(groups.len())?;
-        for (slot, index) in order.iter_mut().zip(0..) {
-            *slot = index;
-        }
-        let nodes = arena.unset::<Node>(Bvh::max_nodes(groups.len()))?;
-        let groups = match groups {
-            [] => None,
-            groups => {
-                let mut scratch = arena.scratch();
-                let (boxes, _) = scratch.unset::<Point>(2 * groups.len())?.as_chunks_mut::<2>();
-                for (corners, group) in boxes.iter_mut().zip(groups) {
-                    let Aabb { min, max } = group.aabb();
-                    *corners = [min, max];
-                }
-                Some(Bvh::build(order, boxes, nodes, meter)?)
-            }
-        };
         let mut tree = PointTreeSlots::new(scene.len(), arena)?;
         let mut scratch = arena.scratch();
         let (points, names) = (scratch.unset::<Point>(scene.len())?, scratch.unset::<u32>(scene.len())?);
@@ -171,7 +140,7 @@ impl<'a> Obstacles<'a> {
         let scene_radius =
             scene.as_ref().map_or(0.0, |scene| (SPACING_RATIO * spacing_of(scene)).min(MAX_SCENE_RADIUS));
         let hung = task.request.hung;
-        Ok(Self { support, groups, group_order: order, scene, scene_radius, hung, rested: None })
+        Ok(Self { support, scene, scene_radius, hung, rested: None })
     }
 
     /// The same with the object at its rest pose.
@@ -243,6 +212,11 @@ impl<'a> Space<'a> {
         }
     }
 
+    /// Memory for other use, a slot for each patch of the supporter: what was known of the poses before is forgotten.
+    pub(super) fn lend(&mut self) -> &mut [u32] {
+        self.track.lend()
+    }
+
     /// The nearest obstacle within `limit` metres.
     pub(super) fn nearest(&mut self, at: &Placement, limit: f32, meter: &mut Meter) -> Result<Nearest, Stop> {
         let mut nearest = Nearest::within(limit);
@@ -309,7 +283,7 @@ impl<'a> Space<'a> {
         }
         for part in moving.gripper.iter().flat_map(|gripper| gripper.parts).enumerate() {
             let mut query = CapsuleQuery::new(part, moving.opening, pose, found);
-            query.supporter(obstacles);
+            query.supporter(obstacles.support);
             if let Some(scene) = &obstacles.scene {
                 query.scene(scene, obstacles.scene_radius);
             }

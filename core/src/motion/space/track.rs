@@ -47,6 +47,12 @@ impl<'s> Track<'s> {
         Self { groups: &mut [], patches: &mut [], others, nearest: 0, at: None, travelled: MAX_TRAVEL }
     }
 
+    /// The memory of the patches, for other use: nothing is known of what is near any more.
+    pub(super) fn lend(&mut self) -> &mut [u32] {
+        self.travelled = MAX_TRAVEL;
+        bytemuck::cast_slice_mut(self.patches)
+    }
+
     /// Moves on to a placement of an object of this reach.
     pub(super) fn move_to(&mut self, at: &Placement, reach: f32) {
         if let Some(before) = self.at {
