@@ -2,7 +2,7 @@
 
 use super::enclosure::{Enclosure, Probe};
 use super::{Body, Contact, Support};
-use crate::geometry::{Pose, Vector, any_perpendicular, principal_direction, rotate_about};
+use crate::geometry::{Pose, Vector, any_perpendicular, rotate_about};
 use crate::monitor::{Meter, Stop};
 use core::fmt;
 
@@ -74,9 +74,6 @@ impl Kinds {
 const CARRYING_SHARE: f32 = 0.15;
 /// Cosine between a contact's normal and up below which it steadies the object and does not carry it.
 const CARRYING_COSINE: f32 = 0.2;
-/// Radius around a contact in which the direction of the bar is estimated where the surface there is flat, metres: more than a
-/// bar's thickness, less than its length.
-const BAR_RADIUS: f32 = 0.02;
 /// Depths below a contact at which the axis of the bar is looked for, metres: the first with room for the bar counts.
 const BAR_DEPTHS: [f32; 4] = [0.004, 0.0025, 0.0015, 0.001];
 /// Share of its depth below the contact that a point of the axis must be away from the object.
@@ -108,7 +105,7 @@ pub(crate) fn kind_of(
             continue;
         }
         let Some(probe) = probe_below(body, &to_object, contact) else { continue };
-        let bar = bar_direction(support, contact);
+        let bar = support.bar_or_spread(&contact.position, &contact.normal);
         let towards = to_object * contact.normal;
         match probe.enclosure((&(to_object * bar), &towards, &(to_object * up)), meter)? {
             Enclosure::Loop => return Ok(Kind::Threaded),
@@ -125,12 +122,6 @@ pub(crate) fn kind_of(
         }
     }
     Ok(kind)
-}
-
-/// Unit vector along the bar that a contact is on, in supporter coordinates; its sign has no meaning.
-fn bar_direction(support: &Support, contact: &Contact) -> Vector {
-    let along = support.bar_near(&contact.position, &contact.normal);
-    along.unwrap_or_else(|| principal_direction(&support.tree, &contact.position, BAR_RADIUS))
 }
 
 /// The probe below a contact; `None` if there is no room for one, as between two layers of the object.

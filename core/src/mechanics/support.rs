@@ -6,12 +6,15 @@ use super::constants::{
 };
 use super::fit::Surroundings;
 use super::patch::Patch;
-use crate::geometry::{Aabb, Nearest, Neighbour, Point, PointTree, Vector, unit_or};
+use crate::geometry::{Aabb, Nearest, Neighbour, Point, PointTree, Vector, principal_direction, unit_or};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Unfinished};
 use bytemuck::{Pod, Zeroable};
 use core::ops::Range;
 
+/// Radius around a contact in which the direction of the bar is estimated where the surface there is flat, metres: more than a
+/// bar's thickness, less than its length.
+const BAR_RADIUS: f32 = 0.02;
 /// Least cosine between a bar and the normal of a surface that is across its way: bars lean by 60 degrees at most. The sides of a
 /// bent bar are at a smaller angle to its way on.
 const ACROSS: f32 = 0.45;
@@ -130,6 +133,12 @@ impl<'a> Support<'a> {
             }
         }
         nearest.and_then(Patch::bar_direction)
+    }
+
+    /// The same; where the surface is flat or round on all sides, as at the end of a peg, the direction in which its points around
+    /// spread most. Its sign has no meaning.
+    pub(crate) fn bar_or_spread(&self, point: &Point, normal: &Vector) -> Vector {
+        self.bar_near(point, normal).unwrap_or_else(|| principal_direction(&self.tree, point, BAR_RADIUS))
     }
 
     /// Share of a segment from the end of a patch of a bar at which the bar meets a surface across its way, as where it is fixed to a

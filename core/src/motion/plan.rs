@@ -270,7 +270,7 @@ impl<'a> Planner<'_, 'a, '_> {
             ends: Ends::new(),
             sampled: 0,
             budget: motion.samples,
-            has_left: false,
+            tried: 0,
             step: motion.step,
         };
         loop {

@@ -8,9 +8,9 @@ use super::failure::Obstacle;
 use super::permit::Permit;
 use super::placement::{Leg, Placement};
 use super::route::Route;
-use super::search::{ASIDE_EXCESS, BAR_RANGE, GOAL, LEAST_STRIDE, LEAST_TRAVEL, MAX_BARS, SAME_BAR, Search};
+use super::search::{ASIDE_EXCESS, BAR_RANGE, GOAL, LEAST_STRIDE, LEAST_TRAVEL, MAX_BARS, Search};
 use super::slide::aside;
-use super::space::Touches;
+use super::space::{Touch, Touches};
 use crate::geometry::{Point, Vector, fibonacci_direction, unit_or};
 use crate::mechanics::{Pull, Sleep, Support, pulled};
 use crate::monitor::{Meter, Stop};
@@ -30,8 +30,12 @@ const CORRECTIONS: usize = 2;
 const STRAIGHT: usize = 16;
 /// Directions in which the object is pulled on from the end of a bar.
 const DIRECTIONS: usize = 14;
-/// Pulls along a bar.
-const ALONG_BAR: usize = 64;
+/// Pulls along a bar at most: ten times the reach of what moves.
+const ALONG_BAR: usize = 200;
+/// Pulls along a bar that are made even where they lead no farther from the goal, as round the bend of a hook.
+const ROUND_BENDS: usize = 64;
+/// Share of the length of pulls by which they must lead farther from the goal after that.
+const FARTHER: f32 = 0.25;
 /// Pulls along a bar after which the way out is tried.
 const UNTIL_TRIED: usize = 8;
 /// Distance from the object within which a bar leads it, metres: it is pulled with a little more than the required distance.
@@ -58,11 +62,7 @@ impl Search<'_, '_, '_> {
         let to_object = self.goal.pose(&self.space.moving.centre).inverse();
         // There is room for all.
         let _ = self.ends.push((0, None));
-        let mut tried = Vec::<Vector, MAX_BARS>::new();
-        for &(bar, at) in &self.bars_at(0, BAR_RANGE, meter)? {
-            if tried.iter().any(|other| other.dot(&bar).abs() > SAME_BAR) || tried.push(bar).is_err() {
-                continue;
-            }
+        for (bar, at) in self.bars(meter)? {
             for direction in [bar, -bar] {
                 if self.pull_along((direction, to_object * at), route, permit, meter)? {
                     return Ok(true);
@@ -81,19 +81,35 @@ impl Search<'_, '_, '_> {
         meter: &mut Meter,
     ) -> Result<bool, Stop> {
         let centre = self.space.moving.centre;
-        let (mut at, mut direction) = (0, direction);
+        let start = self.goal.pose(&centre) * point;
+        let (mut at, mut direction, mut without, mut farthest) = (0, direction, 0, 0.0_f32);
         for pull in 1..=ALONG_BAR {
             let here = self.trees[GOAL].placement(at).pose(&centre) * point;
-            let bars = self.bars_at(at, LEADING_RANGE, meter)?;
-            let nearest =
-                bars.iter().min_by(|(_, a), (_, b)| (a - here).norm().total_cmp(&(b - here).norm()));
+            let touches = self.touches(at, LEADING_RANGE, meter)?;
+            let support = self.space.obstacles.support;
+            let bars = touches
+                .iter()
+                .filter_map(|touch| Some((support.bar_near(&touch.at, &touch.normal)?, touch.at)));
+            let nearest = bars.min_by(|(_, a), (_, b)| (a - here).norm().total_cmp(&(b - here).norm()));
             if let Some((bar, _)) = nearest {
-                direction = if bar.dot(&direction) < 0.0 { -bar } else { *bar };
+                direction = if bar.dot(&direction) < 0.0 { -bar } else { bar };
+            }
+            without = if nearest.is_some() { 0 } else { without + 1 };
+            if without == UNTIL_TRIED {
+                break;
             }
             let Some(next) = self.pull(at, (direction, Some(point)), permit, meter)? else { break };
             at = next;
-            if pull % UNTIL_TRIED == 0 && self.meets(GOAL, at, route, permit, meter)? {
-                return Ok(true);
+            if pull % UNTIL_TRIED == 0 {
+                if self.meets(GOAL, at, route, permit, meter)? {
+                    return Ok(true);
+                }
+                let distance = (here - start).norm();
+                let pulled = UNTIL_TRIED as f32 * STRIDE * self.space.moving.reach;
+                if pull >= ROUND_BENDS && distance < farthest + FARTHER * pulled {
+                    break;
+                }
+                farthest = farthest.max(distance);
             }
         }
         if at != 0 {
@@ -197,25 +213,17 @@ impl Search<'_, '_, '_> {
         }))
     }
 
-    /// The directions of the bars within `range` metres of the object at a node of the goal's tree, and the places where they are
-    /// near.
-    pub(super) fn bars_at(
+    /// What the object is near at a node of the goal's tree, of the supporter, within `range` metres.
+    pub(super) fn touches(
         &mut self,
         node: usize,
         range: f32,
         meter: &mut Meter,
-    ) -> Result<Vec<(Vector, Point), { Touches::CAPACITY }>, Stop> {
+    ) -> Result<Vec<Touch, { Touches::CAPACITY }>, Stop> {
         let mut touches = Touches::within(range);
         let place = self.trees[GOAL].placement(node);
         self.space.collect(&place, &mut touches, meter)?;
-        let support = self.space.obstacles.support;
-        let mut bars = Vec::new();
-        for touch in touches.list.iter().filter(|touch| touch.obstacle == Obstacle::Supporter) {
-            if let Some(bar) = support.bar_near(&touch.at, &touch.normal) {
-                // There is room for all touches.
-                let _ = bars.push((bar, touch.at));
-            }
-        }
-        Ok(bars)
+        touches.list.retain(|touch| touch.obstacle == Obstacle::Supporter);
+        Ok(touches.list)
     }
 }

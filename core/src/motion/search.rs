@@ -8,9 +8,9 @@ use super::placement::{Leg, Placement};
 use super::pull::Ends;
 use super::route::Route;
 use super::slide::aside;
-use super::space::Space;
+use super::space::{Space, Touch};
 use super::tree::Tree;
-use crate::geometry::{Aabb, Vector};
+use crate::geometry::{Aabb, Point, Vector};
 use crate::hanging::Distance;
 use crate::memory::Arena;
 use crate::monitor::{Meter, Stop};
@@ -22,6 +22,9 @@ use heapless::Vec;
 pub(super) const GOAL: usize = 0;
 /// Index of the tree that grows from the starts.
 pub(super) const START: usize = 1;
+
+/// Ways from the goal that are tried first: what most often works.
+const FIRST_WAYS: usize = 3;
 
 // How branches grow. Set by hand.
 
@@ -49,7 +52,7 @@ const SPIN: f32 = 0.5;
 /// Distance from the object within which a bar carries it, metres.
 pub(super) const BAR_RANGE: f32 = 0.003;
 /// Cosine between the directions of bars that are one.
-pub(super) const SAME_BAR: f32 = 0.9;
+const SAME_BAR: f32 = 0.9;
 /// Bars along which the object is dragged from the goal.
 pub(super) const MAX_BARS: usize = 4;
 
@@ -76,8 +79,8 @@ pub(super) struct Search<'q, 'a, 's> {
     pub(super) sampled: usize,
     /// Poses that may be sampled, all in all: shown as progress.
     pub(super) budget: usize,
-    /// Whether the first ways from the goal have been tried.
-    pub(super) has_left: bool,
+    /// Ways from the goal that are tried first and have been: straight, dragged, pulled.
+    pub(super) tried: usize,
     /// Largest distance between two poses that the caller is asked about.
     pub(super) step: Distance,
 }
@@ -103,8 +106,17 @@ impl Search<'_, '_, '_> {
         meter: &mut Meter,
     ) -> Result<Outcome, Stop> {
         let starts = self.starts();
-        if !core::mem::replace(&mut self.has_left, true) && self.leave_goal(route, permit, meter)? {
-            return Ok(Outcome::Found);
+        // What was found by one may turn out not to be free: the search goes on with the next one.
+        while self.tried < FIRST_WAYS {
+            self.tried += 1;
+            let is_found = match self.tried {
+                1 => self.leave_straight(route, permit, meter)?,
+                2 => self.drag_along_bars(route, permit, meter)?,
+                _ => self.pull_along_bars(route, permit, meter)?,
+            };
+            if is_found {
+                return Ok(Outcome::Found);
+            }
         }
         for _ in 0..samples {
             if self.trees.iter().any(Tree::is_full) {
@@ -133,8 +145,8 @@ impl Search<'_, '_, '_> {
         Ok(Outcome::UsedUp)
     }
 
-    /// Tries what most often works: straight to a start, and along the bar on which the object hangs, both ways, dragged and then pulled.
-    fn leave_goal(
+    /// Tries the straight ways to the starts.
+    fn leave_straight(
         &mut self,
         route: &mut Route,
         permit: &mut Permit,
@@ -155,7 +167,17 @@ impl Search<'_, '_, '_> {
                 }
             }
         }
-        for direction in self.bars(meter)? {
+        Ok(false)
+    }
+
+    /// Drags the object from the goal along the bars that it is near there, both ways.
+    fn drag_along_bars(
+        &mut self,
+        route: &mut Route,
+        permit: &mut Permit,
+        meter: &mut Meter,
+    ) -> Result<bool, Stop> {
+        for (direction, _) in self.bars(meter)? {
             for direction in [direction, -direction] {
                 let mut at = 0;
                 let mut leg = Leg { shift: direction, turn: Vector::zeros() };
@@ -170,18 +192,21 @@ impl Search<'_, '_, '_> {
                 }
             }
         }
-        self.pull_along_bars(route, permit, meter)
+        Ok(false)
     }
 
-    /// Directions of the bars that the object is near at the goal, one of each.
-    fn bars(&mut self, meter: &mut Meter) -> Result<Vec<Vector, MAX_BARS>, Stop> {
-        let mut bars = Vec::<Vector, MAX_BARS>::new();
-        for &(bar, _) in &self.bars_at(0, BAR_RANGE, meter)? {
-            if bars.iter().all(|other| other.dot(&bar).abs() < SAME_BAR) {
-                let _ = bars.push(bar);
-            }
+    /// The bars that the object is near at the goal, one of each direction, and the places where they are near. Where none is, as at the
+    /// round end of a peg, those along which the surface extends that carries the object.
+    pub(super) fn bars(&mut self, meter: &mut Meter) -> Result<Vec<(Vector, Point), MAX_BARS>, Stop> {
+        let touches = self.touches(0, BAR_RANGE, meter)?;
+        let (support, up) = (self.space.obstacles.support, self.params.up());
+        let near = |touch: &Touch| Some((support.bar_near(&touch.at, &touch.normal)?, touch.at));
+        let bars = apart(touches.iter().filter_map(near));
+        if !bars.is_empty() {
+            return Ok(bars);
         }
-        Ok(bars)
+        let carrying = touches.iter().filter(|touch| touch.normal.dot(&up) > 0.0);
+        Ok(apart(carrying.map(|touch| (support.bar_or_spread(&touch.at, &touch.normal), touch.at))))
     }
 
     /// Connects the other tree to a new node. Returns whether that gives a route, which it writes, that the caller accepts.
@@ -356,6 +381,17 @@ impl Search<'_, '_, '_> {
             self.trees[tree].cut_off(node);
         }
     }
+}
+
+/// Of these bars, those whose directions differ.
+fn apart(bars: impl Iterator<Item = (Vector, Point)>) -> Vec<(Vector, Point), MAX_BARS> {
+    let mut kept = Vec::<(Vector, Point), MAX_BARS>::new();
+    for (direction, at) in bars {
+        if kept.iter().all(|(other, _)| other.dot(&direction).abs() < SAME_BAR) {
+            let _ = kept.push((direction, at));
+        }
+    }
+    kept
 }
 
 /// Appends the places from a node to its root.

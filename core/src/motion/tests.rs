@@ -1,7 +1,7 @@
 //! Insertions with known answers, and what must not change the answer.
 
 use super::*;
-use crate::geometry::{Aabb, Cloud, Point, Pose, Vector};
+use crate::geometry::{Aabb, Cloud, Point, Pose, Vector, fibonacci_direction};
 use crate::hanging::{Distance, HangingPose, Hung, Object, Request, Rest, Supporter};
 use crate::memory::Limits;
 use crate::test_shapes::{Shape, peg, prism, torus};
@@ -284,6 +284,34 @@ fn a_path_ends_before_the_object_presses() {
         // Farther away it ends at the rest pose.
         assert!((plan_to(0.0005) - 0.0005).abs() < 1e-6);
     });
+}
+
+/// On the round end of a peg no bar is near, but the peg is.
+#[test]
+fn a_ring_on_the_round_end_of_a_peg_comes_off_at_once() {
+    const BALL: f32 = 0.0122;
+    let end = Point::new(0.08, 0.0, 0.03);
+    let mut scene = Scene::ring_on(&[vec![[0.0, 0.0, 0.0], end.into()]], end.into());
+    let is_off = |point: &[f32; 3]| (Point::from(*point) - end).norm() > BALL;
+    let (points, normals): (Vec<_>, Vec<_>) = scene
+        .points
+        .iter()
+        .zip(&scene.normals)
+        .filter(|(point, _)| is_off(point))
+        .map(|(p, n)| (*p, *n))
+        .unzip();
+    (scene.points, scene.normals) = (points, normals);
+    for index in 0..1500 {
+        let normal = fibonacci_direction(index, 1500);
+        scene.points.push((end + normal * BALL).into());
+        scene.normals.push(normal.into());
+    }
+    // Too askew for the straight ways out.
+    let turn = UnitQuaternion::from_axis_angle(&Vector::y_axis(), FRAC_PI_2 - 0.5);
+    scene.goal = Pose::from_parts(Translation3::new(end.x, end.y, end.z + BALL + 0.001 - INNER), turn);
+    let found = scene.plan(Motion::DEFAULT).unwrap();
+    assert_hangs(&scene, &found);
+    assert_eq!(found.counts.samples, 0);
 }
 
 #[test]
