@@ -35,7 +35,8 @@ pub(crate) fn first_within(
 ///
 /// - Every point of the supporter is farther than `clearance` metres from the mesh, exactly.
 /// - No bar and no plane of the supporter passes through the mesh between its points, nor between the end of a bar and a surface that it
-///   leads to. This covers meshes without an inside, and blades that are thinner than the spacing of the points.
+///   leads to, nor between the points of a plane that was thinned. This covers meshes without an inside, and blades that are thinner than
+///   the spacing of the points.
 /// - No part of the mesh that the field misses, such as the strings of a racquet, is closer to a point than
 ///   half the reach of the largest patch. Such a part may pass between the points.
 pub(crate) fn is_off_surface(
@@ -140,6 +141,7 @@ fn first_on_surface(
         let is_far_by_field = field.distance(point) > thin + FIELD_ERROR * field.voxel_size();
         !surface.is_within(point, if is_far_by_field { clearance.max(thin) } else { clearance })
     };
+    let inverse = pose.inverse();
     let crosses = |from: &Point, to: &Point| {
         let segment = to - from;
         let length = segment.norm();
@@ -152,17 +154,28 @@ fn first_on_surface(
                 .fixed_at(bar, &(pose * to), &(pose * (to + way)))
                 .is_some_and(|share| crosses(to, &(to + way * share)))
     };
-    let is_crossed = |patch: usize, [from, to]: [Point; 2]| {
-        let bar = support.patches.get(patch).filter(|patch| beyond > 0.0 && patch.bar_direction().is_some());
-        crosses(&from, &to)
-            || bar.is_some_and(|bar| is_crossed_beyond(bar, &from, &to) || is_crossed_beyond(bar, &to, &from))
+    let rotation = pose.rotation.to_rotation_matrix();
+    let is_crossed = |index: usize, at: &Point| {
+        let Some(patch) = support.patches.get(index) else { return false };
+        let bar = (beyond > 0.0 && patch.bar_direction().is_some()).then_some(patch);
+        let place = |offset: Vector| at + rotation.inverse_transform_vector(&offset);
+        let is_segment_crossed = |ends: [Vector; 2]| {
+            let [from, to] = ends.map(place);
+            crosses(&from, &to)
+                || bar.is_some_and(|bar| {
+                    is_crossed_beyond(bar, &from, &to) || is_crossed_beyond(bar, &to, &from)
+                })
+        };
+        patch.filled_segments().any(is_segment_crossed)
+            || beyond > 0.0
+                && support.is_crossed_between(index, |from, to| crosses(&(inverse * from), &(inverse * to)))
     };
     first_hit(scene, pose, greatest, ball_gap, is_point_clear, is_crossed, meter)
 }
 
 /// Returns the first part of the supporter that is not clear of the object: a point for which
 /// `is_point_clear` is false, the deepest point of a patch that penetrates the object by more than
-/// [`PATCH_PENETRATION`], or the centre of a patch of a bar or plane of which a segment `is_crossed` by the object.
+/// [`PATCH_PENETRATION`], or the centre of a patch of a bar or plane that `is_crossed` by the object, by its index and its centre.
 ///
 /// The closures take object coordinates. `ball_gap` is `None` if every point within a radius of a point is clear, otherwise how
 /// close such a ball may come to the object, metres; where that is least is looked first, since most poses that are tested
@@ -174,7 +187,7 @@ fn first_hit(
     distance: f32,
     ball_gap: impl Fn(&Point, f32) -> Option<f32>,
     is_point_clear: impl Fn(&Point) -> bool,
-    is_crossed: impl Fn(usize, [Point; 2]) -> bool,
+    is_crossed: impl Fn(usize, &Point) -> bool,
     meter: &mut Meter,
 ) -> Result<Option<Point>, Stop> {
     // A matrix rotates faster than the quaternion of the pose.
@@ -191,8 +204,7 @@ fn first_hit(
         {
             return Some(pose * nearest.at);
         }
-        let place = |offset: Vector| at + rotation.inverse_transform_vector(&offset);
-        patch.filled_segments().any(|ends| is_crossed(index, ends.map(place))).then_some(position)
+        is_crossed(index, &at).then_some(position)
     };
     let (mut found, queries) = (None::<Point>, Cell::new(0));
     let count = |some: usize| queries.set(queries.get() + some);

@@ -133,6 +133,12 @@ impl Patch {
         (self.is_wire() || across > BAR_CURVATURE + along.abs()).then_some(self.along)
     }
 
+    /// Whether it is on a plane that was thinned, but no longer than a patch of a dense cloud to one of its sides.
+    pub(super) fn is_cut_off_in_plane(&self) -> bool {
+        let [a, b] = self.extents;
+        self.ends & Self::EXCLUDED != 0 && a.min(b) < LONG
+    }
+
     /// Mean curvature across, 1/m.
     pub(super) fn curvature_across(&self) -> f32 {
         0.5 * (self.curvatures[2] + self.curvatures[3])

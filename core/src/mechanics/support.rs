@@ -19,6 +19,13 @@ const BAR_RADIUS: f32 = 0.02;
 /// bent bar are at a smaller angle to its way on.
 const ACROSS: f32 = 0.45;
 
+/// Distance of neighbours in a plane that was thinned, metres: the diagonal of a cube of which one point is kept, and a bit.
+const PLANE_RANGE: f32 = 0.02;
+/// Neighbours in a plane above which it was not thinned.
+const MAX_IN_PLANE: usize = 16;
+/// Largest height of a neighbour above the plane of a patch, as a share of its distance. Normals beside a bar are off by 10 degrees.
+const IN_PLANE: f32 = 0.2;
+
 /// A fixed supporter, in its own coordinates.
 #[derive(Clone, Copy)]
 pub(crate) struct Support<'a> {
@@ -163,6 +170,32 @@ impl<'a> Support<'a> {
             }
         }
         fixed.filter(|share| *share < end)
+    }
+
+    /// Whether `is_crossed` holds of a segment from a patch of a plane that was thinned to a neighbour in the same plane, where the extents
+    /// of the patch do not fill what is between them: beside a bar that is fixed to the plane, neighbours are seen on some sides only.
+    pub(crate) fn is_crossed_between(
+        &self,
+        index: usize,
+        mut is_crossed: impl FnMut(&Point, &Point) -> bool,
+    ) -> bool {
+        let Some(patch) = self.patches.get(index).filter(|patch| patch.is_cut_off_in_plane()) else {
+            return false;
+        };
+        let at = self.position(index);
+        let mut others = heapless::Vec::<Point, MAX_IN_PLANE>::new();
+        let mut is_dense = false;
+        self.tree.for_each_within(&at, PLANE_RANGE, |neighbour| {
+            let Ok(other) = self.representatives.binary_search(&neighbour.index) else { return };
+            let (place, Some(other)) = (self.position(other), self.patches.get(other)) else { return };
+            let height = (place - at).dot(&(patch.normal + other.normal)).abs();
+            if other.normal.dot(&patch.normal) > REPRESENTATIVE_COSINE
+                && height < 2.0 * IN_PLANE * libm::sqrtf(neighbour.distance_squared)
+            {
+                is_dense |= others.push(place).is_err();
+            }
+        });
+        !is_dense && others.iter().any(|other| is_crossed(&at, other))
     }
 
     /// Indices of the patches at a range of points of the tree.

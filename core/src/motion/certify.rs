@@ -51,7 +51,9 @@ pub(super) fn certify(
 fn tested(space: &mut Space, place: &Placement, meter: &mut Meter) -> Result<Option<f32>, Stop> {
     let distance = space.nearest(place, MAX_CLEARANCE, meter)?.distance;
     let moving = space.moving;
-    let Some(body) = moving.body.as_ref().filter(|_| distance < NEAR) else { return Ok(Some(distance)) };
+    // Between the points of a plane that was thinned nothing may be near.
+    let is_near = distance < NEAR || space.obstacles.support.reach > NEAR;
+    let Some(body) = moving.body.as_ref().filter(|_| is_near) else { return Ok(Some(distance)) };
     let pose = place.pose(&moving.centre);
     let is_through = space.crosses_hung(place, meter)?
         || !is_off_surface((body, space.obstacles.support), &pose, LEAST_DISTANCE, meter)?;

@@ -107,6 +107,23 @@ impl Scene {
         Self::ring_on(&[closed], [0.0, 0.0, -0.03])
     }
 
+    /// On a thin rail between two plates of 40 cm, the points of which are thinned to 12.5 mm.
+    fn on_rail_between_plates(inner: f32) -> Self {
+        let (mut points, mut normals) = wires(&[vec![[-0.1, 0.0, 0.0], [0.1, 0.0, 0.0]]], 0.0025);
+        for (side, facing) in [(-0.1, 1.0), (-0.105, -1.0), (0.1, -1.0), (0.105, 1.0)] {
+            for (j, k) in (-66..=66).flat_map(|j| (-66..=66).map(move |k| (j, k))) {
+                let (y, z) = (0.003 * j as f32, 0.003 * k as f32);
+                if y.hypot(z) > 0.0025 {
+                    points.push([side, y, z]);
+                    normals.push([facing, 0.0, 0.0]);
+                }
+            }
+        }
+        let turn = UnitQuaternion::from_axis_angle(&Vector::y_axis(), FRAC_PI_2);
+        let goal = Pose::from_parts(Translation3::identity(), turn);
+        Self { object: torus(inner + 0.0015, 0.0015, 64, 20), points, normals, goal }
+    }
+
     /// A flat bar in a closed box that has one slot.
     fn in_box_with_slot(slot: [f32; 2]) -> Self {
         let (half, spacing) = (0.04, 0.002);
@@ -325,6 +342,19 @@ fn insertions_that_are_not() {
     let motion = Motion { samples: 300, ..Motion::DEFAULT };
     let failure = Scene::in_box_with_slot([0.018, 0.018]).plan(motion).err();
     assert_eq!(failure, Some(PlanFailure::BudgetUsedUp { samples: 300 }));
+}
+
+/// The plates stop a ring of any size, whichever few of their points are kept: those of a grid that does not move with the scene.
+#[test]
+fn a_ring_does_not_pass_between_the_points_of_a_plate() {
+    for [y, z] in [[0.0, 0.0], [0.005, 0.005], [0.0075, 0.005], [0.0075, 0.0075]] {
+        for inner in [0.006, 0.01, 0.013] {
+            let scene = Scene::on_rail_between_plates(inner).turned(&Translation3::new(0.0, y, z).into());
+            let start = Some(Translation3::new(0.3, 0.0, 0.0) * scene.goal);
+            let failure = scene.plan(Motion { start, samples: 20, ..Motion::DEFAULT }).err();
+            assert_eq!(failure, Some(PlanFailure::BudgetUsedUp { samples: 20 }), "{inner} {y} {z}");
+        }
+    }
 }
 
 /// No pose with a way out is taken for enclosed.
