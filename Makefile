@@ -128,8 +128,8 @@ meant: setup
 	cargo run --release -p host-tests --bin meant -- probability --pairs 90 --seed 41 $(if $(MESHES),--meshes $(MESHES))
 
 reach: setup
-	cargo run --release -p host-tests --bin reach -- --seed 64 --pairs 88 --trees 24 --enclosed 12 --peer --out docs/RESULTS.md
-	cargo run --release -p host-tests --bin reach -- --seed 64 --pairs 44 --trees 0 --enclosed 0 --scene nothing,wall --gripper \
+	cargo run --release -p host-tests --bin reach -- --seed 65 --pairs 88 --trees 24 --enclosed 12 --peer --out docs/RESULTS.md
+	cargo run --release -p host-tests --bin reach -- --seed 65 --pairs 44 --trees 0 --enclosed 0 --scene nothing,wall --gripper \
 		--json build/reach_gripper.jsonl --out docs/RESULTS.md --section "Paths with a gripper"
 
 peer_python = build/peer/bin/python

@@ -30,6 +30,7 @@ mod task;
 mod tests;
 mod timing;
 mod tree;
+mod widen;
 mod written;
 
 pub use clearance::Clearance;

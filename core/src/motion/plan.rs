@@ -21,6 +21,7 @@ use super::space::{Moving, Obstacles, Space};
 use super::task::Task;
 use super::timing::set_times;
 use super::tree::{Metric, Tree};
+use super::widen::widen;
 use super::written::Written;
 use crate::geometry::{Aabb, Pose, Vector, is_rigid};
 use crate::hanging::HangingPose;
@@ -301,6 +302,8 @@ impl<'a> Planner<'_, 'a, '_> {
             short.copy_from(found);
             let kept = (search.required, motion.clearance);
             shorten(search.space, short, kept, &mut search.random, self.meter)?;
+            let radius = search.trees[GOAL].metric().radius;
+            widen(search.space, short, (motion.clearance, radius), self.meter)?;
             let is_accepted = permit.refused_leg(short, &motion.step, self.meter)?.is_none();
             if is_accepted && let Ok(clearance) = certify(search.space, short, self.meter)? {
                 return Ok(clearance);
