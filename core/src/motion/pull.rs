@@ -94,6 +94,7 @@ impl Search<'_, '_, '_> {
             if let Some((bar, _)) = nearest {
                 direction = if bar.dot(&direction) < 0.0 { -bar } else { bar };
             }
+            // Off the bar, the samples lead on.
             without = if nearest.is_some() { 0 } else { without + 1 };
             if without == UNTIL_TRIED {
                 break;
