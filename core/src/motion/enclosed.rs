@@ -293,7 +293,8 @@ fn goes_through(
     let Some(first) = (0..patches.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))) else {
         return Ok(false);
     };
-    (passes[first], queue[0]) = (0, first as u32);
+    let (Some(seen), Some(begin)) = (passes.get_mut(first), queue.first_mut()) else { return Ok(false) };
+    (*seen, *begin) = (0, first as u32);
     // What goes through more often than can be counted, as a long spring does, may or may not be linked.
     let (mut next, mut count, mut is_linked, mut is_countable) = (0, 1, false, true);
     while next < count && !is_linked && is_countable {

@@ -52,8 +52,10 @@ impl<'p> Permit<'p> {
         step: &Distance,
         meter: &Meter,
     ) -> Result<Option<usize>, Stop> {
-        for leg in 0..route.legs() {
-            if !self.accepts_leg(&route.places()[leg], &route.leg(leg), step, meter)? {
+        for (leg, ends) in route.places().windows(2).enumerate() {
+            if let [from, to] = ends
+                && !self.accepts_leg(from, &from.leg_to(to), step, meter)?
+            {
                 return Ok(Some(leg));
             }
         }

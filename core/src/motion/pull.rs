@@ -62,7 +62,7 @@ impl Search<'_, '_, '_> {
         let to_object = self.goal.pose(&self.space.moving.centre).inverse();
         // There is room for all.
         let _ = self.ends.push((0, None));
-        for (bar, at) in self.bars(meter)? {
+        for &(bar, at) in &self.bars(meter)? {
             for direction in [bar, -bar] {
                 if self.pull_along((direction, to_object * at), route, permit, meter)? {
                     return Ok(true);

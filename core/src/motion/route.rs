@@ -55,7 +55,7 @@ impl<'s> Route<'s> {
     }
 
     pub(super) fn places(&self) -> &[Placement] {
-        &self.places[..self.len]
+        self.places.get(..self.len).unwrap_or_default()
     }
 
     /// Number of legs.
@@ -69,7 +69,7 @@ impl<'s> Route<'s> {
 
     /// Least clearance of a range of legs, metres.
     pub(super) fn clearance(&self, legs: core::ops::Range<usize>) -> f32 {
-        self.clearances[legs].iter().copied().fold(f32::INFINITY, f32::min)
+        self.clearances.get(legs).unwrap_or_default().iter().copied().fold(f32::INFINITY, f32::min)
     }
 
     /// Replaces the places after `first` and up to `last` by `between`, none or a few of them with the clearances of the ways to

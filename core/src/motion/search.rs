@@ -177,14 +177,17 @@ impl Search<'_, '_, '_> {
         permit: &mut Permit,
         meter: &mut Meter,
     ) -> Result<bool, Stop> {
-        for (direction, _) in self.bars(meter)? {
+        for &(direction, _) in &self.bars(meter)? {
             for direction in [direction, -direction] {
                 let mut at = 0;
                 let mut leg = Leg { shift: direction, turn: Vector::zeros() };
                 for _ in 0..DRAGS {
                     let Some(node) = self.drag(at, leg, permit, meter)? else { break };
                     let nodes = self.trees[GOAL].nodes();
-                    leg = nodes[nodes[node].parent as usize].placement.leg_to(&nodes[node].placement);
+                    let last =
+                        nodes.get(node).and_then(|last| Some((nodes.get(last.parent as usize)?, last)));
+                    let Some((before, last)) = last else { break };
+                    leg = before.placement.leg_to(&last.placement);
                     at = node;
                     if self.meets(GOAL, node, route, permit, meter)? {
                         return Ok(true);

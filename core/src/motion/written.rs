@@ -23,8 +23,10 @@ impl Written<'_> {
         if let Some(first) = route.places().first() {
             self.push(first, centre);
         }
-        for leg in 0..route.legs() {
-            self.leg(&route.places()[leg], &route.leg(leg), centre);
+        for ends in route.places().windows(2) {
+            if let [from, to] = ends {
+                self.leg(from, &from.leg_to(to), centre);
+            }
         }
     }
 
