@@ -19,7 +19,8 @@ const BAR_RADIUS: f32 = 0.02;
 /// bent bar are at a smaller angle to its way on.
 const ACROSS: f32 = 0.45;
 
-/// Distance of neighbours in a plane that was thinned, metres: the diagonal of a cube of which one point is kept, and a bit.
+/// Distance of neighbours in a plane that was thinned, metres: the diagonal of a cube of which one point is kept near what may hang
+/// (`PLANE_CUBE` in `perception/cleaning/merge.rs`, 12.5 mm), and a bit. Farther away there is nothing that a loop could hang on.
 const PLANE_RANGE: f32 = 0.02;
 /// Neighbours in a plane above which it was not thinned.
 const MAX_IN_PLANE: usize = 16;
