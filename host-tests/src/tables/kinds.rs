@@ -31,9 +31,17 @@ pub(super) fn table(rows: &[&Row]) -> String {
     };
     text += &confusion("by construction", &pairs(|outcome| outcome.joined));
     text += &confusion("by the motions that free it", &pairs(|outcome| outcome.freed));
-    let meant: Vec<[Kind; 2]> =
-        hang().filter_map(|(row, outcome, _)| Some([row.meant?, outcome.joined?])).collect();
+    let meant: Vec<(&Row, [Kind; 2])> =
+        hang().filter_map(|(row, outcome, _)| Some((*row, [row.meant?, outcome.joined?]))).collect();
     text + &as_meant(&meant)
+}
+
+/// Objects that hang in every home, and the words in the names of what they are hung on there.
+const DAILY: [&str; 7] = ["mug", "cap", "pan", "utensil", "scissors", "key", "clothes hanger"];
+const DAILY_SUPPORTERS: [&str; 3] = ["hook", "tree", "peg"];
+
+fn is_daily(row: &Row) -> bool {
+    DAILY.contains(&row.object.as_str()) && DAILY_SUPPORTERS.iter().any(|word| row.supporter.contains(word))
 }
 
 /// How the predictor's kinds agree with those of a judge, for best poses that hang.
@@ -58,7 +66,7 @@ fn confusion(judge: &str, pairs: &[[Kind; 2]]) -> String {
 
 /// How many best poses that hang are of the kind that a person means. A pose of the other of the first two kinds is not,
 /// although it may be as good: that is counted by itself.
-fn as_meant(pairs: &[[Kind; 2]]) -> String {
+fn as_meant(pairs: &[(&Row, [Kind; 2])]) -> String {
     if pairs.is_empty() {
         return String::new();
     }
@@ -73,13 +81,20 @@ fn as_meant(pairs: &[[Kind; 2]]) -> String {
         let (strict, first) = (wilson(strict, of.len()), wilson(first, of.len()));
         let _ = writeln!(text, "| {name} | {} | {strict} | {first} |", of.len());
     };
+    let of = |is_of: &dyn Fn(&Row, Kind) -> bool| -> Vec<&[Kind; 2]> {
+        pairs.iter().filter(|(row, [meant, _])| is_of(row, *meant)).map(|(_, kinds)| kinds).collect()
+    };
     for kind in Kind::ALL {
-        let of: Vec<_> = pairs.iter().filter(|[meant, _]| *meant == kind).collect();
+        let of = of(&|_, meant| meant == kind);
         if !of.is_empty() {
             line(kind.name(), &of);
         }
     }
-    line("threaded or hooked", &pairs.iter().filter(|[meant, _]| is_first(*meant)).collect::<Vec<_>>());
-    line("**all**", &pairs.iter().collect::<Vec<_>>());
+    line("threaded or hooked", &of(&|_, meant| is_first(meant)));
+    let daily = of(&|row, _| is_daily(row));
+    if !daily.is_empty() {
+        line("daily things on hooks, trees and pegs", &daily);
+    }
+    line("**all**", &of(&|_, _| true));
     text + "\n"
 }
