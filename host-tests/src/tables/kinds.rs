@@ -36,12 +36,14 @@ pub(super) fn table(rows: &[&Row]) -> String {
     text + &as_meant(&meant)
 }
 
-/// Objects that hang in every home, and the words in the names of what they are hung on there.
-const DAILY: [&str; 7] = ["mug", "cap", "pan", "utensil", "scissors", "key", "clothes hanger"];
+/// Kinds of objects that hang in every home.
+const DAILY_OBJECTS: [&str; 7] = ["mug", "cap", "pan", "utensil", "scissors", "key", "clothes hanger"];
+/// Words in the names of the kinds of supporters that they hang on there.
 const DAILY_SUPPORTERS: [&str; 3] = ["hook", "tree", "peg"];
 
 fn is_daily(row: &Row) -> bool {
-    DAILY.contains(&row.object.as_str()) && DAILY_SUPPORTERS.iter().any(|word| row.supporter.contains(word))
+    DAILY_OBJECTS.contains(&row.object.as_str())
+        && DAILY_SUPPORTERS.iter().any(|word| row.supporter.contains(word))
 }
 
 /// How the predictor's kinds agree with those of a judge, for best poses that hang.
