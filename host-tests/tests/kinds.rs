@@ -159,3 +159,19 @@ fn a_mug_on_a_mug_tree_hangs_by_its_handle() {
         assert_eq!(joined((mug, openings), (tree, bars), &rest.pose).map(|j| j.kind), Some(Kind::Threaded));
     }
 }
+
+#[test]
+fn clothes_hangers_hang_by_their_hook_and_not_by_their_frame() {
+    let hanger = OBJECTS.iter().find(|kind| kind.name == "clothes hanger").unwrap();
+    for name in ["mug tree", "L hook", "coat hook"] {
+        let supporter = SUPPORTERS.iter().find(|kind| kind.name == name).unwrap();
+        let pairs = (0..).map(|seed| (hanger.make(seed), supporter.make(seed)));
+        let pairs = pairs.filter(|(hanger, supporter)| meant(hanger, supporter) == Some(Kind::Hooked));
+        for (HangObject { solid, openings }, Support { solid: supporter, bars }) in pairs.take(3) {
+            let found = poses(&solid, &supporter, &Request::ANY, &Params::default());
+            let rest = found[0].rest.unwrap();
+            let joint = joined((&solid, &openings), (&supporter, &bars), &rest.pose);
+            assert_eq!(joint.map(|joint| joint.kind), Some(Kind::Hooked), "on a {name}");
+        }
+    }
+}

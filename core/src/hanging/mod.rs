@@ -13,6 +13,7 @@ mod let_go;
 mod many;
 mod method;
 mod object;
+mod opening;
 mod pose;
 mod predict;
 mod region;

@@ -105,6 +105,7 @@ impl<'a> CandidateSearch<'a> {
             let lever = (contact.position - scene.0.centre).norm() / scene.0.reach;
             way.score = libm::logf(contact.capture.clamp(MIN_CAPTURE, MAX_CAPTURE) / MIN_CAPTURE)
                 + LEVER_BONUS * lever
+                - OPENING_PENALTY * (contact.opening() / scene.0.reach).min(1.0)
                 + if is_along(k) { ALONG_BONUS } else { 0.0 }
                 + if is_along(k) && contact.is_in_loop() { LOOP_BONUS } else { 0.0 }
                 - if contact.is_enclosed() { ENCLOSED_PENALTY } else { 0.0 };

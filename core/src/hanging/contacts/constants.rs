@@ -15,8 +15,6 @@ pub(super) const MIN_OBJECT_COSINE: f32 = 0.3;
 /// places contacts on the ridges of bars, not on their flanks; the last one asks for less than the paper's 0.8, for
 /// steep pegs.
 pub(super) const MIN_SUPPORT_COSINES: [f32; 4] = [0.95, 0.8, 0.6, 0.3];
-/// Depths below a contact at which rays to both sides test whether a bar is caught, metres.
-pub(super) const CAPTURE_DEPTHS: [f32; 6] = [0.0015, 0.003, 0.006, 0.012, 0.024, 0.048];
 /// Depth below a contact at which the free length along the bar is measured, metres: about the depth of a bar's axis.
 pub(super) const PASSAGE_DEPTH: f32 = 0.004;
 /// Least length of the level bar that must reach a contact, metres. Contacts that only a shorter one reaches, as inside
@@ -41,7 +39,7 @@ pub(super) const PUSH_OVERSHOOT: f32 = 0.0002;
 pub(super) const MAX_PENETRATION: f32 = 0.003;
 /// Largest total displacement by pushes, metres. Farther away it would be another contact.
 pub(super) const MAX_PUSH: f32 = 0.004;
-/// Capture depth below which all contacts score the same, metres: half the least of `CAPTURE_DEPTHS`.
+/// Capture depth below which all contacts score the same, metres: half the least depth of `opening.rs`.
 pub(super) const MIN_CAPTURE: f32 = 0.00075;
 /// Capture depth above which all contacts score the same, metres: a bar that is caught by so much does not slip out.
 pub(super) const MAX_CAPTURE: f32 = 0.012;
@@ -70,6 +68,9 @@ pub(super) const LOOP_BONUS: f32 = 1.0;
 /// Score added for a contact as far from the centre of mass as the object reaches; less in proportion. People hang things by
 /// their ends, and what hangs from there swings back the most firmly.
 pub(super) const LEVER_BONUS: f32 = 4.0;
+/// Score taken off a contact whose opening is as high as the object reaches; less in proportion. Of two openings people use the one
+/// that is made for bars: a clothes hanger has a hook of 3 cm above a frame of 30 cm.
+pub(super) const OPENING_PENALTY: f32 = 1.5;
 /// Score taken off a contact in a loop after `PATIENCE` places without room: a loop that is too narrow for the bars loses its
 /// bonus before all places are tried.
 pub(super) const NARROW_LOOP_DISCOUNT: f32 = LOOP_BONUS / 8.0;

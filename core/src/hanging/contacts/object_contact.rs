@@ -3,6 +3,7 @@
 use super::constants::*;
 use super::counts::ObjectCounts;
 use crate::geometry::{Point, Vector, any_perpendicular, rotate_about, unit_or};
+use crate::hanging::opening;
 use crate::hanging::samples::ObjectSamples;
 use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
@@ -34,6 +35,11 @@ impl ObjectContact {
     /// Whether the contact is in a loop, through which a bar of useful length passes.
     pub(super) fn is_in_loop(&self) -> bool {
         self.encircled > 0 && !self.is_enclosed()
+    }
+
+    /// Height of the opening in which the bar lies, metres: see [`opening::height`].
+    pub(super) fn opening(&self) -> f32 {
+        opening::height(self.capture, self.room)
     }
 
     /// Whether only a short bar reaches the contact, as inside a cup.
@@ -116,36 +122,28 @@ impl Search<'_> {
     }
 
     fn examine(&self, point: Point, normal: Vector, meter: &mut Meter) -> Result<ObjectContact, Stop> {
+        let surface = self.samples.surface;
         let down = unit_or(self.samples.centre_of_mass - point, normal);
         let start = point + normal * RAY_OFFSET;
         meter.rays(1)?;
-        let room = self.samples.surface.closest_hit(&start, &down).unwrap_or(f32::INFINITY);
+        let room = surface.closest_hit(&start, &down).unwrap_or(f32::INFINITY);
         let reference = any_perpendicular(down);
         let (mut bar_direction, mut capture) = (reference, -1.0);
         for k in 0..BAR_DIRECTIONS {
             let along =
                 rotate_about(down, core::f32::consts::PI * k as f32 / BAR_DIRECTIONS as f32, reference);
-            let side = along.cross(&down);
-            meter.rays(2 * CAPTURE_DEPTHS.len())?;
-            let is_caught = |level: &&f32| {
-                let from = start + down * **level;
-                **level < room
-                    && self.samples.surface.any_hit(&from, &side)
-                    && self.samples.surface.any_hit(&from, &-side)
-            };
-            // From the deepest up: a crease right below the contact may catch nothing although a deeper level does.
-            let caught = CAPTURE_DEPTHS.iter().rev().find(is_caught).copied().unwrap_or(0.0);
+            let caught = opening::capture(surface, &start, (&down, &along), room, meter)?;
             if caught > capture {
                 (bar_direction, capture) = (along, caught);
             }
         }
         let from = start + down * PASSAGE_DEPTH.min(0.5 * room);
         meter.rays(2)?;
-        let ways = [bar_direction, -bar_direction].map(|way| self.samples.surface.closest_hit(&from, &way));
+        let ways = [bar_direction, -bar_direction].map(|way| surface.closest_hit(&from, &way));
         let passage = ways.iter().map(|hit| hit.unwrap_or(f32::INFINITY)).fold(0.0, f32::max);
         let is_hit = |k: usize| {
             let angle = core::f32::consts::TAU * k as f32 / ENCIRCLING_RAYS as f32;
-            self.samples.surface.any_hit(&from, &rotate_about(bar_direction, angle, down))
+            surface.any_hit(&from, &rotate_about(bar_direction, angle, down))
         };
         meter.rays(ENCIRCLING_RAYS)?;
         let encircled = u32::from(capture > 0.0 && (0..ENCIRCLING_RAYS).all(is_hit));

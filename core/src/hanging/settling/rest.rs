@@ -39,14 +39,17 @@ pub struct Rest {
     pub unseen: Unseen,
     /// How firmly the object stays.
     pub margin: Margin,
+    /// Height of the opening of the object in which the bar lies, over the distance from the centre of mass to the farthest point;
+    /// at most 1.
+    pub(super) opening: f32,
     contacts: [Contact; MAX_CONTACTS],
-    contact_count: u32,
+    contact_count: u8,
 }
 
 impl Rest {
     pub(super) fn new(
         pose: Pose,
-        kind: Kind,
+        (kind, opening): (Kind, f32),
         (sinking, clearance): (f32, f32),
         tolerance: Tolerance,
         unseen: Unseen,
@@ -59,7 +62,7 @@ impl Rest {
         }
         let probability = probability::of(&margin, clearance, &unseen);
         let robustness = probability::of_robust(&margin, &unseen);
-        let contact_count = bearing.len().min(MAX_CONTACTS) as u32;
+        let contact_count = bearing.len().min(MAX_CONTACTS) as u8;
         Self {
             pose,
             kind,
@@ -70,6 +73,7 @@ impl Rest {
             robustness,
             unseen,
             margin,
+            opening,
             contacts,
             contact_count,
         }
@@ -88,6 +92,7 @@ impl Rest {
             robustness: 0.0,
             unseen: Unseen::default(),
             margin: Margin::default(),
+            opening: 0.0,
             contacts: [Contact::default(); MAX_CONTACTS],
             contact_count: 0,
         }
