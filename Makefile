@@ -122,7 +122,7 @@ tables: setup
 
 meant: setup
 	cargo run --release -p host-tests --bin tables -- --summary --engine bullet --profile default --pairs 100 --seed 41 --json build/meant.jsonl
-	cargo run --release -p host-tests --bin meant -- turned --pairs 60 --seed 41
+	cargo run --release -p host-tests --bin meant -- turned --pairs 160 --seed 41
 	cargo run --release -p host-tests --bin meant -- many --pairs 15 --seed 41
 	cargo run --release -p host-tests --bin meant -- tolerance --pairs 60 --seed 41
 	cargo run --release -p host-tests --bin meant -- probability --pairs 90 --seed 41 $(if $(MESHES),--meshes $(MESHES))

@@ -189,6 +189,12 @@ fn turned(cases: &[Case], threads: usize) {
     share("of the same kind by construction at the same place", &|change| {
         change.is_built_alike() && change.is_same_place()
     });
+    for (frame, title) in
+        ["as is meant, in the original frame", "as is meant, in the turned frame"].iter().enumerate()
+    {
+        let count = found.iter().filter(|(case, change)| change.built[frame] == case.meant).count();
+        println!("{title}: {count} of {}, {} %", found.len(), wilson(count, found.len()));
+    }
     println!("\nOthers:");
     let name = |kind: Option<Kind>| kind.map_or("none", Kind::name);
     for (case, Change { kinds, built, apart, .. }) in found.iter().filter(|(_, change)| !change.is_same()) {
