@@ -33,7 +33,8 @@ pub(super) fn capture(
 }
 
 /// Height of the opening: how far the bar moves down until it can leave to a side or is stopped, metres; at least
-/// [`LEAST_HEIGHT`], and infinite if it can do neither within 48 mm. It follows from what [`capture`] returns and takes.
+/// [`LEAST_HEIGHT`], also where nothing is caught, and infinite if it can do neither within 48 mm. It follows from what [`capture`]
+/// returns and takes.
 pub(super) fn height(capture: f32, room: f32) -> f32 {
     let free = DEPTHS.into_iter().find(|depth| *depth > capture).unwrap_or(f32::INFINITY);
     free.min(room).max(LEAST_HEIGHT)

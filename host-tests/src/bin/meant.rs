@@ -9,7 +9,7 @@ use hangpose::mechanics::{Contact, Kind, Kinds};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, sample_supporter};
 use host_tests::judge::{Bullet, Judge, Scene};
 use host_tests::reach::tree::Tree;
-use host_tests::shapes::{Bar, Joint, Random};
+use host_tests::shapes::{Bar, Joint, Random, is_daily};
 use host_tests::tables::case::{Case, Fit, made};
 use host_tests::tables::proportion::wilson;
 use host_tests::tables::real::real;
@@ -63,11 +63,7 @@ enum Measure {
     },
 }
 
-/// Kinds of objects that a person hangs every day.
-const DAILY: [&str; 7] = ["mug", "cap", "pan", "utensil", "scissors", "key", "clothes hanger"];
-/// Parts of the names of supporters that a person hangs them on.
-const ON: [&str; 3] = ["hook", "tree", "peg"];
-/// Generated pairs that are needed for one pair of these.
+/// Generated pairs that are needed for one pair that a person hangs every day.
 const DAILY_IN: usize = 6;
 
 fn main() -> Result<()> {
@@ -75,11 +71,7 @@ fn main() -> Result<()> {
     match measure {
         Measure::Turned => {
             let mut cases = fitting(DAILY_IN * pairs, seed);
-            let is_daily = |case: &Case| {
-                DAILY.contains(&case.object_kind.as_str())
-                    && ON.iter().any(|on| case.supporter_kind.contains(on))
-            };
-            cases.retain(is_daily);
+            cases.retain(|case| is_daily(&case.object_kind, &case.supporter_kind));
             cases.truncate(pairs);
             turned(&cases, threads);
         }

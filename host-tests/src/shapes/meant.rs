@@ -9,6 +9,16 @@ use hangpose::mechanics::Kind;
 use parry3d::query::{Ray, RayCast};
 use parry3d::shape::TriMesh;
 
+/// Kinds of objects that a person hangs every day.
+const DAILY_OBJECTS: [&str; 7] = ["mug", "cap", "pan", "utensil", "scissors", "key", "clothes hanger"];
+/// Words in the names of the kinds of supporters that a person hangs them on.
+const DAILY_SUPPORTERS: [&str; 3] = ["hook", "tree", "peg"];
+
+/// Whether a person hangs this kind of object on this kind of supporter every day.
+pub fn is_daily(object: &str, supporter: &str) -> bool {
+    DAILY_OBJECTS.contains(&object) && DAILY_SUPPORTERS.iter().any(|word| supporter.contains(word))
+}
+
 /// Whether the object can hang on the supporter: some opening by which a person hangs it fits some bar.
 pub fn fits(object: &HangObject, support: &Support) -> bool {
     meant(object, support).is_some()

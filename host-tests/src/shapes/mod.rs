@@ -19,7 +19,7 @@ pub mod vector;
 
 pub use builder::Builder;
 pub use insertion::{Insertion, insertion};
-pub use meant::{Joint, fits, joined, joints, meant};
+pub use meant::{Joint, fits, is_daily, joined, joints, meant};
 pub use objects::OBJECTS;
 pub use random::Random;
 pub use supporters::SUPPORTERS;

@@ -2,6 +2,7 @@
 
 use super::proportion::wilson;
 use super::row::{Outcome, Row};
+use crate::shapes::is_daily;
 use hangpose::mechanics::Kind;
 use std::fmt::Write;
 
@@ -34,16 +35,6 @@ pub(super) fn table(rows: &[&Row]) -> String {
     let meant: Vec<(&Row, [Kind; 2])> =
         hang().filter_map(|(row, outcome, _)| Some((*row, [row.meant?, outcome.joined?]))).collect();
     text + &as_meant(&meant)
-}
-
-/// Kinds of objects that hang in every home.
-const DAILY_OBJECTS: [&str; 7] = ["mug", "cap", "pan", "utensil", "scissors", "key", "clothes hanger"];
-/// Words in the names of the kinds of supporters that they hang on there.
-const DAILY_SUPPORTERS: [&str; 3] = ["hook", "tree", "peg"];
-
-fn is_daily(row: &Row) -> bool {
-    DAILY_OBJECTS.contains(&row.object.as_str())
-        && DAILY_SUPPORTERS.iter().any(|word| row.supporter.contains(word))
 }
 
 /// How the predictor's kinds agree with those of a judge, for best poses that hang.
@@ -93,7 +84,7 @@ fn as_meant(pairs: &[(&Row, [Kind; 2])]) -> String {
         }
     }
     line("threaded or hooked", &of(&|_, meant| is_first(meant)));
-    let daily = of(&|row, _| is_daily(row));
+    let daily = of(&|row, _| is_daily(&row.object, &row.supporter));
     if !daily.is_empty() {
         line("daily things on hooks, trees and pegs", &daily);
     }
