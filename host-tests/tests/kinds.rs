@@ -7,7 +7,7 @@ use hangpose::sample_supporter;
 use host_tests::judge::{Scene, freedom};
 use host_tests::predicted;
 use host_tests::shapes::vector::{V, X, Y, Z, arc, rounded, scale};
-use host_tests::shapes::{Builder, HangObject, OBJECTS, SUPPORTERS, Support, joined, meant};
+use host_tests::shapes::{Builder, HangObject, OBJECTS, Random, SUPPORTERS, Support, joined, meant};
 use host_tests::solid::Solid;
 
 /// Number of points of a supporter's cloud.
@@ -165,7 +165,8 @@ fn clothes_hangers_hang_by_their_hook_and_not_by_their_frame() {
     let hanger = OBJECTS.iter().find(|kind| kind.name == "clothes hanger").unwrap();
     for name in ["mug tree", "L hook", "coat hook"] {
         let supporter = SUPPORTERS.iter().find(|kind| kind.name == name).unwrap();
-        let pairs = (0..).map(|seed| (hanger.make(seed), supporter.make(seed)));
+        let frame = |seed| Random::named(name, seed).rotation();
+        let pairs = (0..).map(|seed| (hanger.make(seed).turned(frame(seed)), supporter.make(seed)));
         let pairs = pairs.filter(|(hanger, supporter)| meant(hanger, supporter) == Some(Kind::Hooked));
         for (HangObject { solid, openings }, Support { solid: supporter, bars }) in pairs.take(3) {
             let found = poses(&solid, &supporter, &Request::ANY, &Params::default());

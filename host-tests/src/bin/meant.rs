@@ -204,7 +204,7 @@ fn turned(cases: &[Case], threads: usize) {
 
 fn change(case: &Case) -> Change {
     let mut random = Random::named(&case.name, 2);
-    let object_turn = Pose::from_parts(Translation3::identity(), any_rotation(&mut random));
+    let object_turn = Pose::from_parts(Translation3::identity(), random.rotation());
     let yaw = UnitQuaternion::from_axis_angle(&Vector::z_axis(), random.range(0.0, TAU) as f32);
     let moved = [0; 3].map(|_| random.range(-MOVED, MOVED) as f32);
     let supporter_turn = Pose::from_parts(Translation3::from(moved), yaw);
@@ -250,11 +250,6 @@ fn change(case: &Case) -> Change {
 fn main_contact(rest: &Rest) -> Point {
     let heaviest = |a: &&Contact, b: &&Contact| a.force.total_cmp(&b.force);
     rest.contacts().iter().max_by(heaviest).map_or(Point::origin(), |contact| contact.position)
-}
-
-fn any_rotation(random: &mut Random) -> UnitQuaternion<f32> {
-    let parts = [0; 4].map(|_| random.gaussian() as f32);
-    UnitQuaternion::new_normalize(parts.into())
 }
 
 fn any_direction(random: &mut Random) -> Vector {

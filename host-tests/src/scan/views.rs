@@ -3,8 +3,8 @@
 use crate::shapes::vector::turn;
 use crate::shapes::{Opening, OpeningKind, Random};
 use hangpose::geometry::{Point, Pose, Vector};
-use nalgebra::{Isometry3, UnitQuaternion};
-use std::f64::consts::{PI, TAU};
+use nalgebra::Isometry3;
+use std::f64::consts::PI;
 
 /// Smallest distance of the camera from the centre of what it looks at, m: below it most depth cameras measure badly.
 const NEAREST: f32 = 0.5;
@@ -51,7 +51,7 @@ pub fn looking(target: &Target, direction: &Vector) -> Pose {
 
 /// Directions spread evenly over the sphere on a Fibonacci lattice, turned at random. One direction is uniform.
 pub fn sphere(count: usize, random: &mut Random) -> Vec<Vector> {
-    let turned = any_rotation(random);
+    let turned = random.rotation();
     let direction = |k: usize| {
         let z = 1.0 - (2.0 * k as f64 + 1.0) / count as f64;
         let angle = PI * (3.0 - 5.0_f64.sqrt()) * k as f64;
@@ -113,12 +113,4 @@ fn across(axis: &Vector, random: &mut Random) -> Vector {
             return across;
         }
     }
-}
-
-/// A uniformly random rotation (Shoemake 1992).
-fn any_rotation(random: &mut Random) -> UnitQuaternion<f32> {
-    let [share, a, b] = [1.0, TAU, TAU].map(|high| random.range(0.0, high));
-    let (low, high) = ((1.0 - share).sqrt(), share.sqrt());
-    let parts = [low * libm::sin(a), low * libm::cos(a), high * libm::sin(b), high * libm::cos(b)];
-    UnitQuaternion::from_quaternion(nalgebra::Vector4::from(parts.map(|x| x as f32)).into())
 }

@@ -25,6 +25,7 @@ pub use random::Random;
 pub use supporters::SUPPORTERS;
 
 use crate::solid::Solid;
+use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
 /// A kind of object.
 pub struct ObjectKind {
@@ -79,6 +80,17 @@ impl HangObject {
             ..*opening
         });
         Self { solid: self.solid.scaled(factor), openings: openings.collect() }
+    }
+
+    /// The same object in another frame, turned about the origin.
+    pub fn turned(&self, rotation: UnitQuaternion<f32>) -> Self {
+        let pose = Isometry3::from_parts(Translation3::identity(), rotation);
+        let openings = self.openings.iter().map(|opening| Opening {
+            centre: (rotation * Point3::from(opening.centre)).into(),
+            axis: (rotation * Vector3::from(opening.axis)).into(),
+            ..*opening
+        });
+        Self { solid: Solid::default().with([(&self.solid, pose)]), openings: openings.collect() }
     }
 }
 

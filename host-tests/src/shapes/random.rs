@@ -1,5 +1,8 @@
 //! A seeded random number generator with the same numbers on every machine.
 
+use nalgebra::{Quaternion, UnitQuaternion};
+use std::f64::consts::TAU;
+
 /// SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
 pub struct Random(u64);
 
@@ -39,11 +42,19 @@ impl Random {
     /// Normally distributed with mean 0 and standard deviation 1 (Box and Muller 1958).
     pub fn gaussian(&mut self) -> f64 {
         let radius = (-2.0 * libm::log(1.0 - self.range(0.0, 1.0))).sqrt();
-        radius * libm::cos(self.range(0.0, std::f64::consts::TAU))
+        radius * libm::cos(self.range(0.0, TAU))
     }
 
     /// True with this probability.
     pub fn chance(&mut self, probability: f64) -> bool {
         self.range(0.0, 1.0) < probability
+    }
+
+    /// Uniform over all rotations (Shoemake, "Uniform random rotations", 1992).
+    pub fn rotation(&mut self) -> UnitQuaternion<f32> {
+        let [share, a, b] = [1.0, TAU, TAU].map(|high| self.range(0.0, high));
+        let (low, high) = ((1.0 - share).sqrt(), share.sqrt());
+        let parts = [low * libm::sin(a), low * libm::cos(a), high * libm::sin(b), high * libm::cos(b)];
+        UnitQuaternion::from_quaternion(Quaternion::from(parts.map(|x| x as f32)))
     }
 }

@@ -53,8 +53,6 @@ pub(super) const MAX_OBJECT_CONTACTS: usize = 192;
 pub(super) const OBJECT_SPACING: f32 = 0.02;
 /// Cosine above which two normals count as similar for that.
 pub(super) const SIMILAR_NORMALS: f32 = 0.7;
-/// Bar directions tried at a contact of the object, evenly over half a turn.
-pub(super) const BAR_DIRECTIONS: usize = 6;
 /// Contacts kept of a supporter. Where there are more, they are chosen farther apart.
 pub(super) const MAX_SUPPORT_CONTACTS: usize = 96;
 /// Least distance between contacts of a supporter, metres.

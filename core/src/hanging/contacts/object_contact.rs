@@ -2,7 +2,7 @@
 
 use super::constants::*;
 use super::counts::ObjectCounts;
-use crate::geometry::{Point, Vector, any_perpendicular, rotate_about, unit_or};
+use crate::geometry::{Point, Vector, rotate_about, unit_or};
 use crate::hanging::opening;
 use crate::hanging::samples::ObjectSamples;
 use crate::monitor::{Meter, Stop};
@@ -127,16 +127,7 @@ impl Search<'_> {
         let start = point + normal * RAY_OFFSET;
         meter.rays(1)?;
         let room = surface.closest_hit(&start, &down).unwrap_or(f32::INFINITY);
-        let reference = any_perpendicular(down);
-        let (mut bar_direction, mut capture) = (reference, -1.0);
-        for k in 0..BAR_DIRECTIONS {
-            let along =
-                rotate_about(down, core::f32::consts::PI * k as f32 / BAR_DIRECTIONS as f32, reference);
-            let caught = opening::capture(surface, &start, (&down, &along), room, meter)?;
-            if caught > capture {
-                (bar_direction, capture) = (along, caught);
-            }
-        }
+        let (bar_direction, capture) = opening::deepest_bar(surface, &start, &down, room, meter)?;
         let from = start + down * PASSAGE_DEPTH.min(0.5 * room);
         meter.rays(2)?;
         let ways = [bar_direction, -bar_direction].map(|way| surface.closest_hit(&from, &way));
