@@ -22,9 +22,14 @@
 
 enum { POSES = 10, WAYPOINTS = 1000, IMAGES = 4, NAME_BYTES = 64 };
 
-// Bytes for a pair, its models and the work on them. 15 MiB are what the largest RAM of the board leaves.
+// Bytes for a pair, its models and the work on them. 15 MiB are what the largest RAM of the board leaves. Where two threads
+// search, each has work of its own: up to 2 MiB more.
 #ifndef MEMORY
+#ifdef __arm__
 #define MEMORY (15 << 20)
+#else
+#define MEMORY (17 << 20)
+#endif
 #endif
 #ifdef LARGE
 __attribute__((section(LARGE)))
