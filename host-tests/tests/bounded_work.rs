@@ -34,7 +34,8 @@ fn most_for_object(params: &Params) -> [usize; 2] {
         Candidates::Sites => {
             [samples * (1 + object_directions * rays_per_direction), samples * (1 + free_space_steps)]
         }
-        Candidates::Contacts => [192 * 87, 3 * voxels],
+        // At a contact: down, to both sides of 24 bars at 6 depths, along the bar, and around it.
+        Candidates::Contacts => [192 * (1 + 24 * 6 * 2 + 2 + 12), 3 * voxels],
     }
 }
 
