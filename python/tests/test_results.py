@@ -33,7 +33,10 @@ def test_text(prediction: hangpose.Prediction, mug: hangpose.Object, hook: hangp
     assert repr(hook) == "<Supporter 'hook.ply': 10000 points, 11 places to hang on>"
     assert repr(prediction.best).startswith("<Pose 1: threaded, hangs with probability 98%, release at (")
     assert repr(hangpose.Params("paper", friction=0.6)) == "Params('paper', friction=0.6)"
-    several = hangpose.predict(mug, hook, params=hangpose.Params(firm_enough=8), distinct=(0.005, 0.17))
+    patient = {"firm_enough": 8}
+    mug = hangpose.Object(SAMPLES / "mug.obj", params=patient)
+    hook = hangpose.Supporter(SAMPLES / "hook.ply", params=patient)
+    several = hangpose.predict(mug, hook, distinct=(0.005, 0.17))
     assert "<Pose 1: threaded" in repr(several) and "<Pose 2: threaded" in repr(several)
 
 
