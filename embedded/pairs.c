@@ -22,19 +22,20 @@
 
 enum { POSES = 10, WAYPOINTS = 1000, IMAGES = 4, NAME_BYTES = 64 };
 
-// Bytes for a pair, its models and the work on them. 15 MiB are what the largest RAM of the board leaves. Where two threads
-// search, each has work of its own: up to 2 MiB more.
+// Bytes for a pair, its models and the work of one thread on them. 15 MiB are what the largest RAM of the board leaves.
 #ifndef MEMORY
-#ifdef __arm__
 #define MEMORY (15 << 20)
-#else
-#define MEMORY (17 << 20)
 #endif
+// Bytes for the work of a second thread, which the board does not have.
+#ifdef __arm__
+#define SECOND 0
+#else
+#define SECOND (2 << 20)
 #endif
 #ifdef LARGE
 __attribute__((section(LARGE)))
 #endif
-static _Alignas(16) unsigned char memory[MEMORY];
+static _Alignas(16) unsigned char memory[MEMORY + SECOND];
 
 static hangpose_detail detail = {.struct_size = sizeof detail};
 static const char *name = "", *stage = "";
@@ -49,13 +50,13 @@ static void check(hangpose_status status) {
 
 // ---- memory: taken from the front, and given back all at once
 
-static size_t used, most;
+static size_t used, most, limit = MEMORY;
 static void *take(size_t size) {
   void *taken = memory + used;
   used += (size + 15) / 16 * 16;
-  if (used > MEMORY) {
+  if (used > limit) {
     fprintf(stderr, "pairs: %s: %s: %lu bytes are needed of %lu\n", name, stage, (unsigned long)used,
-            (unsigned long)MEMORY);
+            (unsigned long)limit);
     exit(1);
   }
   if (used > most) most = used;
@@ -343,6 +344,7 @@ static void pair(const struct given *given, int threads) {
   stage = "poses";
   static struct search searches[2];
   for (int i = 0; i < 1 + threads; ++i) {
+    limit = MEMORY + (size_t)i * SECOND;
     struct search *s = &searches[i];
     *s = (struct search){.object = object, .supporter = supporter, .params = &params};
     s->has_plan = (int)given->plan;
@@ -388,6 +390,7 @@ int main(int argc, char **argv) {
   uint32_t words;
   while (fread(&words, 4, 1, file) == 1) {
     used = 0;
+    limit = MEMORY;
     stage = "input";
     struct given *given = take(4ul * words);
     if (fread(given, 4, words, file) != words) fail("the file is too short");

@@ -10,10 +10,10 @@ use std::fmt::Write;
 pub fn heading(rows: &[Row]) -> String {
     format!(
         "# Results\n\nPrinted by `make tables` from {} rows of generated pairs, whose objects are in frames turned at random. \
-         `host-tests/src/judge/verdict.rs` defines success, robust and the other terms. All rates are in percent, with the 95 % interval of Wilson. \"Top 5\" and \"top 10\" are the \
-         rates at which at least one of the best 5 or 10 poses hangs. All verdicts are by Bullet unless ODE is named. \
-         `core/src/mechanics/kind.rs` defines the kinds in which an object hangs; `host-tests/src/shapes/meant.rs` and \
-         `host-tests/src/judge/freedom.rs` judge them.\n\n",
+         `host-tests/src/judge/verdict.rs` defines success, robust and the other terms. All rates are in percent, with the \
+         95 % interval of Wilson. \"Top 5\" and \"top 10\" are the rates at which at least one of the best 5 or 10 poses \
+         hangs. All verdicts are by Bullet unless ODE is named. `core/src/mechanics/kind.rs` defines the kinds in which \
+         an object hangs; `host-tests/src/shapes/meant.rs` and `host-tests/src/judge/freedom.rs` judge them.\n\n",
         rows.len()
     )
 }
