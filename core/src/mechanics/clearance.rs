@@ -23,11 +23,11 @@ pub(crate) fn first_within(
     let field = scene.0.field;
     // Beyond the band the field is only a lower bound of the distance.
     let clearance = clearance.min(FIELD_BAND_RATIO * field.band());
-    let ball_gap = |point: &Point, radius: f32| {
+    let ball_gap = |point: &Point, radius: f32, _| {
         let gap = field.distance(point) - radius;
         (gap <= clearance).then_some(gap)
     };
-    let is_point_clear = |point: &Point| ball_gap(point, 0.0).is_none();
+    let is_point_clear = |point: &Point| ball_gap(point, 0.0, true).is_none();
     first_hit(scene, pose, clearance, ball_gap, is_point_clear, |_, _| false, meter)
 }
 
@@ -101,12 +101,15 @@ pub(crate) fn is_closer(
         if found || body.is_beyond(&centre, radius + gap) {
             return false;
         }
-        // The field may miss thin parts.
-        let is_missed = field.distance(&centre) > radius + near;
-        if is_missed && !surface.is_within(&centre, radius + gap) {
+        let (by_field, range) = (field.distance(&centre), radius + gap);
+        if by_field > range + field.excess() {
             return false;
         }
         let Some(items) = node.items() else { return true };
+        // The field may miss thin parts.
+        if by_field > radius + near && !surface.is_within(&centre, range) {
+            return false;
+        }
         let mut is_close = |point: &Point| {
             queries += 1;
             let at = to_object * point;
@@ -136,17 +139,18 @@ fn first_on_surface(
 ) -> Result<Option<Point>, Stop> {
     let (field, surface, support) = (scene.0.field, scene.0.surface, scene.1);
     let (thin, greatest) = (0.5 * support.reach, clearance.max(support.reach));
-    let ball_gap = |point: &Point, radius: f32| surface.is_within(point, radius + greatest).then_some(0.0);
+    let ball_gap = |point: &Point, radius: f32, is_leaf: bool| {
+        let range = radius + greatest;
+        // A bound that the field gives will do for what is looked at more closely.
+        let is_near = field.distance(point) <= range + field.excess();
+        (is_near && (!is_leaf || surface.is_within(point, range))).then_some(0.0)
+    };
     let is_point_clear = |point: &Point| {
         let is_far_by_field = field.distance(point) > thin + FIELD_ERROR * field.voxel_size();
         !surface.is_within(point, if is_far_by_field { clearance.max(thin) } else { clearance })
     };
     let inverse = pose.inverse();
-    let crosses = |from: &Point, to: &Point| {
-        let segment = to - from;
-        let length = segment.norm();
-        length > 0.0 && surface.closest_hit(from, &(segment / length)).is_some_and(|hit| hit < length)
-    };
+    let crosses = |from: &Point, to: &Point| from != to && surface.is_crossed(from, to);
     let is_crossed_beyond = |bar: &Patch, from: &Point, to: &Point| {
         let way = unit_or(to - from, Vector::zeros()) * beyond;
         crosses(to, &(to + way))
@@ -178,14 +182,14 @@ fn first_on_surface(
 /// [`PATCH_PENETRATION`], or the centre of a patch of a bar or plane that `is_crossed` by the object, by its index and its centre.
 ///
 /// The closures take object coordinates. `ball_gap` is `None` if every point within a radius of a point is clear, otherwise how
-/// close such a ball may come to the object, metres; where that is least is looked first, since most poses that are tested
+/// close such a ball may come to the object, metres; it is told whether the ball is that of a leaf, the points of which come next; where that is least is looked first, since most poses that are tested
 /// collide. It prunes the tree, as does the distance to the bounding sphere: everything farther than `distance` metres from it
 /// is clear.
 fn first_hit(
     (body, support): (&Body, &Support),
     pose: &Pose,
     distance: f32,
-    ball_gap: impl Fn(&Point, f32) -> Option<f32>,
+    ball_gap: impl Fn(&Point, f32, bool) -> Option<f32>,
     is_point_clear: impl Fn(&Point) -> bool,
     is_crossed: impl Fn(usize, &Point) -> bool,
     meter: &mut Meter,
@@ -214,7 +218,11 @@ fn first_hit(
             let aabb = node.aabb();
             let (centre, radius) = (to_object(&aabb.centre()), 0.5 * aabb.diagonal());
             count(1);
-            if body.is_beyond(&centre, radius + distance) { None } else { ball_gap(&centre, radius) }
+            if body.is_beyond(&centre, radius + distance) {
+                None
+            } else {
+                ball_gap(&centre, radius, node.items().is_some())
+            }
         },
         |found| if found.is_some() { f32::NEG_INFINITY } else { f32::INFINITY },
         |found, items| {

@@ -3,7 +3,7 @@
 use super::path::MAX_CLEARANCE;
 use super::placement::Placement;
 use super::route::Route;
-use super::space::{MAX_STEPS, Space};
+use super::space::{Distances, MAX_STEPS, Space};
 use crate::mechanics::is_off_surface;
 use crate::monitor::{Meter, Stop};
 
@@ -16,46 +16,45 @@ const LEAST_DISTANCE: f32 = 0.00005;
 
 /// The least distance from obstacles at the poses of a route that are tested, metres, capped at [`MAX_CLEARANCE`]; or the first leg
 /// on which the supporter or an object that hangs passes through the mesh of the object, or that takes more than four times
-/// [`MAX_STEPS`] tests, as its steps are a quarter as long. From one of these poses to the next no point of the object moves farther
+/// [`MAX_STEPS`] tests, as its steps are a quarter as long. From one of these poses to the next nothing comes nearer to an obstacle by more
 /// than [`STEP`], or than a quarter of the distance there.
 pub(super) fn certify(
     space: &mut Space,
     route: &Route,
     meter: &mut Meter,
 ) -> Result<Result<f32, usize>, Stop> {
-    let moving = space.moving;
     let mut clearance = MAX_CLEARANCE;
     let Some(first) = route.places().first() else { return Ok(Ok(clearance)) };
-    let Some(mut distance) = tested(space, first, meter)? else { return Ok(Err(0)) };
+    let Some(mut distances) = tested(space, first, meter)? else { return Ok(Err(0)) };
     for index in 0..route.legs() {
         let (from, leg) = (route.places()[index], route.leg(index));
-        let travel = leg.travel(moving.reach).max(1e-9);
+        let travels = space.travels(&from, &leg);
         let (mut share, mut steps) = (0.0, 0);
         while share < 1.0 {
-            clearance = clearance.min(distance);
+            clearance = clearance.min(distances.least());
             steps += 1;
             if steps > 4 * MAX_STEPS {
                 return Ok(Err(index));
             }
-            share = (share + (0.25 * distance).max(STEP) / travel).min(1.0);
+            share = (share + travels.share(&distances, |distance| 0.25 * distance, STEP)).min(1.0);
             match tested(space, &from.after(&leg, share), meter)? {
-                Some(next) => distance = next,
+                Some(next) => distances = next,
                 None => return Ok(Err(index)),
             }
         }
     }
-    Ok(Ok(clearance.min(distance)))
+    Ok(Ok(clearance.min(distances.least())))
 }
 
-/// Distance from obstacles at a place, metres, at most [`MAX_CLEARANCE`]; `None` if something passes through the mesh.
-fn tested(space: &mut Space, place: &Placement, meter: &mut Meter) -> Result<Option<f32>, Stop> {
-    let distance = space.nearest(place, MAX_CLEARANCE, meter)?.distance;
+/// Distances from obstacles at a place; `None` if something passes through the mesh.
+fn tested(space: &mut Space, place: &Placement, meter: &mut Meter) -> Result<Option<Distances>, Stop> {
+    let distances = space.distances(place, f32::NEG_INFINITY, meter)?;
     let moving = space.moving;
     // Between the points of a plane that was thinned nothing may be near.
-    let is_near = distance < NEAR || space.obstacles.support.reach > NEAR;
-    let Some(body) = moving.body.as_ref().filter(|_| is_near) else { return Ok(Some(distance)) };
+    let is_near = distances.least() < NEAR || space.obstacles.support.reach > NEAR;
+    let Some(body) = moving.body.as_ref().filter(|_| is_near) else { return Ok(Some(distances)) };
     let pose = place.pose(&moving.centre);
     let is_through = space.crosses_hung(place, meter)?
         || !is_off_surface((body, space.obstacles.support), &pose, LEAST_DISTANCE, meter)?;
-    Ok((!is_through).then_some(distance))
+    Ok((!is_through).then_some(distances))
 }

@@ -257,7 +257,7 @@ impl<'a> Planner<'_, 'a, '_> {
     ) -> Result<f32, End> {
         let (motion, nodes) = (&self.task.motion, self.counts.nodes);
         let Room { trees, found, short } = room;
-        let mut may_prove = scratch.is_some();
+        let (mut may_prove, mut has_failed) = (scratch.is_some(), false);
         let mut search = Search {
             space,
             required,
@@ -299,6 +299,17 @@ impl<'a> Planner<'_, 'a, '_> {
                     continue;
                 }
             }
+            // Once a route was not free, the next one is tested before it is shortened, which costs more.
+            let mut tested = None::<f32>;
+            if has_failed {
+                match certify(search.space, found, self.meter)? {
+                    Ok(clearance) => tested = Some(clearance),
+                    Err(leg) => {
+                        search.cut_off(leg);
+                        continue;
+                    }
+                }
+            }
             short.copy_from(found);
             let kept = (search.required, motion.clearance);
             shorten(search.space, short, kept, &mut search.random, self.meter)?;
@@ -309,12 +320,19 @@ impl<'a> Planner<'_, 'a, '_> {
                 return Ok(clearance);
             }
             // What the search found has been accepted.
-            match certify(search.space, found, self.meter)? {
+            let of_found = match tested {
+                Some(clearance) => Ok(clearance),
+                None => certify(search.space, found, self.meter)?,
+            };
+            match of_found {
                 Ok(clearance) => {
                     short.copy_from(found);
                     return Ok(clearance);
                 }
-                Err(leg) => search.cut_off(leg),
+                Err(leg) => {
+                    search.cut_off(leg);
+                    has_failed = true;
+                }
             }
         }
     }

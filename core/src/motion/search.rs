@@ -199,8 +199,23 @@ impl Search<'_, '_, '_> {
     }
 
     /// The bars that the object is near at the goal, one of each direction, and the places where they are near. Where none is, as at the
-    /// round end of a peg, those along which the surface extends that carries the object.
+    /// round end of a peg, those along which the surface extends that carries the object. Their directions lead away from the middle of the
+    /// supporter, as that in which most things come off does.
     pub(super) fn bars(&mut self, meter: &mut Meter) -> Result<Vec<(Vector, Point), MAX_BARS>, Stop> {
+        let mut bars = self.bars_either_way(meter)?;
+        let points = self.space.obstacles.support.tree.points();
+        let sum: Vector = points.iter().map(|point| point.coords).sum();
+        let middle = Point::from(sum / points.len() as f32);
+        for (direction, at) in &mut bars {
+            if direction.dot(&(*at - middle)) < 0.0 {
+                *direction = -*direction;
+            }
+        }
+        Ok(bars)
+    }
+
+    /// The same with directions whose sign has no meaning.
+    fn bars_either_way(&mut self, meter: &mut Meter) -> Result<Vec<(Vector, Point), MAX_BARS>, Stop> {
         let touches = self.touches(0, BAR_RANGE, meter)?;
         let (support, up) = (self.space.obstacles.support, self.params.up());
         let near = |touch: &Touch| Some((support.bar_near(&touch.at, &touch.normal)?, touch.at));

@@ -59,6 +59,10 @@ const MARGIN_PART: f32 = 0.1;
 /// Resolution of stored distances, voxels. It fits an `i16`, because no node of a brick is eight voxels off the mesh.
 const QUANTUM: f32 = 1.0 / 4096.0;
 
+/// Largest excess of a positive distance over that from the mesh, in voxels: the distances of the eight corners of a voxel exceed that of a
+/// point in it by no more than the ways to them, √3/2 in the mean at its middle.
+const EXCESS: f32 = 0.867;
+
 /// What a block holds, packed into a `u32`.
 enum Entry {
     /// The brick of this index.
@@ -147,6 +151,11 @@ impl<'m> DistanceField<'m> {
     /// interpolated. Further away they are only on the safe side.
     pub fn band(&self) -> f32 {
         BAND * self.layout.voxel
+    }
+
+    /// By how much a positive distance may exceed that from the mesh, metres, as in walls that are thinner than a voxel.
+    pub(crate) fn excess(&self) -> f32 {
+        EXCESS * self.layout.voxel
     }
 
     /// Signed distance in metres, negative inside, and its gradient, which is of unit length, or zero where there is none.

@@ -255,3 +255,23 @@ fn the_same_mesh_gives_the_same_bytes() {
     };
     assert!(bytes() == bytes());
 }
+
+#[test]
+fn a_positive_distance_exceeds_that_from_the_mesh_by_less_than_it_may() {
+    let thin = torus(0.05, 0.0003, 200, 8);
+    let mut random = Random::new(9);
+    let mut largest = 0.0_f32;
+    for shape in [cuboid([0.1, 0.08, 0.0004]), askew(&cuboid([0.1, 0.08, 0.0004])), askew(&thin)] {
+        with_field(&shape, false, 60_000, |surface, field| {
+            let aabb = surface.aabb();
+            for _ in 0..20_000 {
+                let share = Vector::from([(); 3].map(|()| 1.4 * random.next_f32() - 0.2));
+                let point = aabb.min + aabb.extents().component_mul(&share);
+                let excess = field.distance(&point) - (surface.closest_point(&point) - point).norm();
+                assert!(excess <= field.excess(), "{point}: {excess}, voxel {}", field.voxel_size());
+                largest = largest.max(excess / field.voxel_size());
+            }
+        });
+    }
+    assert!(largest > 0.4, "the thin parts are thinner than a voxel: {largest}");
+}

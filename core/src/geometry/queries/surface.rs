@@ -126,11 +126,22 @@ impl<'m> Surface<'m> {
         hit
     }
 
+    /// Whether the segment between two points meets the mesh.
+    pub(crate) fn is_crossed(&self, from: &Point, to: &Point) -> bool {
+        let mut is_crossed = false;
+        let ray = Ray::new(from, &(to - from), &self.aabb());
+        self.bvh.visit_along(&ray, 1.0, |items, limit| {
+            let triangles = self.triangles.get(items).unwrap_or_default();
+            is_crossed = triangles.iter().any(|t| ray.hit(t, limit).is_some());
+            if is_crossed { -1.0 } else { limit }
+        });
+        is_crossed
+    }
+
     /// Whether an edge of another mesh, which `pose` brings into these coordinates, passes through a triangle of this one. Two meshes
     /// cross where that holds of one of them. Counts the queries.
     pub(crate) fn is_crossed_by(&self, other: &Surface, pose: &Pose, queries: &mut usize) -> bool {
         let mut is_crossed = false;
-        let bounds = self.aabb();
         other.bvh.descend(|_, node| {
             let aabb = node.aabb();
             *queries += 1;
@@ -141,13 +152,8 @@ impl<'m> Surface<'m> {
             for triangle in triangles.unwrap_or_default() {
                 let [a, b, c] = triangle.map(|corner| pose * corner);
                 for [from, to] in [[a, b], [b, c], [c, a]] {
-                    let ray = Ray::new(&from, &(to - from), &bounds);
                     *queries += 1;
-                    self.bvh.visit_along(&ray, 1.0, |items, limit| {
-                        let triangles = self.triangles.get(items).unwrap_or_default();
-                        is_crossed |= triangles.iter().any(|t| ray.hit(t, limit).is_some());
-                        if is_crossed { -1.0 } else { limit }
-                    });
+                    is_crossed |= self.is_crossed(&from, &to);
                 }
             }
             !is_crossed
@@ -315,6 +321,24 @@ mod tests {
                 assert!(!cube.is_within(&Point::new(0.0, 0.0, 1.5), 0.49));
             });
         }
+    }
+
+    #[test]
+    fn a_segment_crosses_where_a_ray_hits_before_its_end() {
+        with_cube(false, false, |cube| {
+            let mut random = crate::random::Random::new(3);
+            let mut crossed = 0;
+            for _ in 0..1000 {
+                let mut point = || Point::from([(); 3].map(|()| 4.0 * random.next_f32() - 2.0));
+                let (from, to) = (point(), point());
+                let way = to - from;
+                let hit = cube.closest_hit(&from, &way.normalize());
+                let is_crossed = cube.is_crossed(&from, &to);
+                assert_eq!(is_crossed, hit.is_some_and(|hit| hit < way.norm()), "{from} {to}");
+                crossed += u32::from(is_crossed);
+            }
+            assert!((200..800).contains(&crossed), "{crossed}");
+        });
     }
 
     #[test]

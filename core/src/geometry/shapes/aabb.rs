@@ -46,6 +46,12 @@ impl Aabb {
         nalgebra::center(&self.min, &self.max)
     }
 
+    /// The eight corners.
+    pub(crate) fn corners(&self) -> [Point; 8] {
+        let ends = [self.min, self.max];
+        core::array::from_fn(|k| Point::new(ends[k & 1].x, ends[k >> 1 & 1].y, ends[k >> 2 & 1].z))
+    }
+
     /// Half the surface area; zero for an empty box.
     pub(crate) fn half_area(&self) -> f32 {
         let e = self.extents().sup(&Vector::zeros());

@@ -10,10 +10,11 @@ pub(super) use touch::{Nearest, Touch, Touches};
 pub(super) use workspace::Workspace;
 
 use capsule::CapsuleQuery;
-use object::ObjectQuery;
+use object::{ObjectQuery, SMALLEST_PIECE};
 use touch::Collector;
 use track::Track;
 
+use super::exits::box_around;
 use super::failure::Obstacle;
 use super::gripper::Gripper;
 use super::path::MAX_CLEARANCE;
@@ -48,6 +49,8 @@ pub(super) struct Obstacles<'a> {
     hung: &'a [Hung<'a>],
     /// The object at its rest pose, an obstacle for the gripper that has let it go.
     rested: Option<(Body<'a>, Pose)>,
+    /// The box around all of the supporter.
+    aabb: Aabb,
 }
 
 /// What moves among what.
@@ -57,9 +60,40 @@ pub(super) struct Space<'a> {
     /// The box that the object stays in, if there is one.
     workspace: Option<Workspace>,
     track: Track<'a>,
-    /// Where the last [`way`](Self::way) ended, and the distance from the nearest obstacle there, metres: the next one often starts
-    /// there.
-    last: Option<(Placement, f32)>,
+    /// Where the last [`way`](Self::way) ended, and the distances there: the next one often starts there.
+    last: Option<(Placement, Distances)>,
+}
+
+/// Distances from the supporter, and from the scene and what hangs already, metres: lower bounds, capped at [`MAX_CLEARANCE`].
+#[derive(Clone, Copy)]
+pub(super) struct Distances {
+    supporter: f32,
+    others: f32,
+}
+
+/// How far a motion brings what moves nearer to the supporter, and to the scene and what hangs already, at most, metres.
+///
+/// What turns about a hook comes hardly nearer to it, however far its other end travels.
+#[derive(Clone, Copy)]
+pub(super) struct Travels {
+    pub(super) supporter: f32,
+    pub(super) others: f32,
+}
+
+impl Distances {
+    /// The lesser one.
+    pub(super) fn least(&self) -> f32 {
+        self.supporter.min(self.others)
+    }
+}
+
+impl Travels {
+    /// The share of a motion of these travels after which the distances that `left` tells of these may be used up, but no less than the
+    /// share after which `least` metres are.
+    pub(super) fn share(&self, distances: &Distances, left: impl Fn(f32) -> f32, least: f32) -> f32 {
+        let share = |distance: f32, travel: f32| left(distance).max(least) / travel.max(1e-9);
+        share(distances.supporter, self.supporter).min(share(distances.others, self.others))
+    }
 }
 
 /// Distance from a patch of the supporter, metres, up to which its nearest point is looked for; beyond it a bound will do.
@@ -139,8 +173,8 @@ impl<'a> Obstacles<'a> {
         };
         let scene_radius =
             scene.as_ref().map_or(0.0, |scene| (SPACING_RATIO * spacing_of(scene)).min(MAX_SCENE_RADIUS));
-        let hung = task.request.hung;
-        Ok(Self { support, scene, scene_radius, hung, rested: None })
+        let aabb = box_around(&task.supporter.points().aabb(), [], support.reach);
+        Ok(Self { support, scene, scene_radius, hung: task.request.hung, rested: None, aabb })
     }
 
     /// The same with the object at its rest pose.
@@ -152,6 +186,25 @@ impl<'a> Obstacles<'a> {
     pub(super) fn without_object(self) -> Self {
         Self { rested: None, ..self }
     }
+
+    /// Upper bounds of how much nearer a motion from a place brings something of this reach.
+    fn travels(&self, reach: f32, from: &Placement, leg: &Leg) -> Travels {
+        let others = leg.travel(reach);
+        Travels { supporter: travel_of_box(&self.aabb, from, leg).min(others), others }
+    }
+}
+
+/// How far any point of a box travels, metres, seen from what moves from a place: an upper bound.
+///
+/// It moves with the speed, per share of the motion, that the moving thing has where the point is. That is affine in the point and in the
+/// centre of the moving thing: greatest at a corner of the box, and at the beginning or the end.
+fn travel_of_box(aabb: &Aabb, from: &Placement, leg: &Leg) -> f32 {
+    let (begin, end) = (from.centre(), from.centre() + leg.shift);
+    let speed = |corner: &Point| {
+        let with = |centre: &Point| (leg.shift + leg.turn.cross(&(corner - centre))).norm_squared();
+        with(&begin).max(with(&end))
+    };
+    libm::sqrtf(aabb.corners().iter().map(speed).fold(0.0, f32::max))
 }
 
 /// Median distance between neighbours, metres.
@@ -231,17 +284,58 @@ impl<'a> Space<'a> {
         required: f32,
         meter: &mut Meter,
     ) -> Result<Option<f32>, Stop> {
-        let mut nearest = Nearest { enough: required, ..Nearest::within(MAX_CLEARANCE) };
-        self.collect(at, &mut nearest, meter)?;
-        Ok(Some(nearest.distance).filter(|distance| *distance >= required))
+        let distance = self.distances(at, required, meter)?.least();
+        Ok(Some(distance).filter(|distance| *distance >= required))
     }
 
-    /// Whether the mesh of the object crosses that of one that hangs: both have details that the distance field lacks.
+    /// Distances from obstacles; below `enough` metres, only that they are.
+    pub(super) fn distances(
+        &mut self,
+        at: &Placement,
+        enough: f32,
+        meter: &mut Meter,
+    ) -> Result<Distances, Stop> {
+        self.move_to(at, meter);
+        let mut nearest = Nearest { enough, ..Nearest::within(MAX_CLEARANCE) };
+        self.collect_supporter(at, &mut nearest, meter)?;
+        let supporter = nearest.distance;
+        if supporter >= enough {
+            self.collect_others(at, &mut nearest, meter)?;
+        }
+        let others = if self.is_bare() {
+            f32::INFINITY
+        } else if nearest.distance < supporter || self.moving.gripper.is_some() {
+            nearest.distance
+        } else {
+            self.bound_of_others().max(supporter)
+        };
+        Ok(Distances { supporter, others })
+    }
+
+    /// Lower bound of the distance of an object from the scene and from what hangs already, metres: what sleeps, and what was looked at, is
+    /// known to be farther away than the nearest.
+    fn bound_of_others(&self) -> f32 {
+        let scene = self.obstacles.scene.iter().map(|_| 0);
+        let hung = (0..self.obstacles.hung.len()).map(|index| 1 + index);
+        scene.chain(hung).map(|other| self.track.bound(other)).fold(f32::INFINITY, f32::min)
+    }
+
+    /// Upper bounds of how much nearer a motion from a place brings what moves.
+    pub(super) fn travels(&self, from: &Placement, leg: &Leg) -> Travels {
+        self.obstacles.travels(self.moving.reach, from, leg)
+    }
+
+    /// Whether the mesh of the object crosses that of one that hangs, at the placement that was looked at last: both have details that the
+    /// distance field lacks.
     pub(super) fn crosses_hung(&self, at: &Placement, meter: &mut Meter) -> Result<bool, Stop> {
         let Some(body) = &self.moving.body else { return Ok(false) };
         let to_object = at.pose(&self.moving.centre).inverse();
         let mut queries = 0;
-        let crosses = self.obstacles.hung.iter().any(|hung| {
+        let errors = SMALLEST_PIECE + body.field.excess();
+        let crosses = self.obstacles.hung.iter().enumerate().any(|(index, hung)| {
+            if !self.track.is_awake(1 + index, errors) {
+                return false;
+            }
             let (between, other) = (to_object * hung.pose, hung.object.surface());
             body.surface.is_crossed_by(other, &between, &mut queries)
                 || other.is_crossed_by(body.surface, &between.inverse(), &mut queries)
@@ -255,6 +349,19 @@ impl<'a> Space<'a> {
         self.workspace.map_or(f32::INFINITY, |workspace| workspace.room_at(&at.pose(&self.moving.centre)))
     }
 
+    /// Whether there is nothing but the supporter.
+    fn is_bare(&self) -> bool {
+        let Obstacles { scene, hung, rested, .. } = &self.obstacles;
+        scene.is_none() && hung.is_empty() && rested.is_none()
+    }
+
+    /// Counts a pose, at which what was known before may hold.
+    fn move_to(&mut self, at: &Placement, meter: &mut Meter) {
+        let Self { moving, obstacles, track, .. } = self;
+        meter.poses += 1;
+        track.move_to(at, |before, leg| obstacles.travels(moving.reach, before, leg));
+    }
+
     /// Collects touches of whatever moves with whatever stands still.
     pub(super) fn collect(
         &mut self,
@@ -262,13 +369,49 @@ impl<'a> Space<'a> {
         found: &mut impl Collector,
         meter: &mut Meter,
     ) -> Result<(), Stop> {
+        self.move_to(at, meter);
+        self.collect_supporter(at, found, meter)?;
+        self.collect_others(at, found, meter)
+    }
+
+    /// Collects touches with the supporter.
+    fn collect_supporter(
+        &mut self,
+        at: &Placement,
+        found: &mut impl Collector,
+        meter: &mut Meter,
+    ) -> Result<(), Stop> {
         let Self { moving, obstacles, track, .. } = self;
-        meter.poses += 1;
         let pose = &at.pose(&moving.centre);
         if let Some(body) = &moving.body {
             let mut query = ObjectQuery::new(body, pose, found, Some(meter));
-            track.move_to(at, moving.reach);
             query.supporter(obstacles.support, track);
+            // What is far from everything counts as well, here and below, so that a work limit ends the longest way.
+            let queries = query.queries.max(1);
+            meter.distance_queries(queries)?;
+        }
+        for part in moving.gripper.iter().flat_map(|gripper| gripper.parts).enumerate() {
+            let mut query = CapsuleQuery::new(part, moving.opening, pose, found);
+            query.supporter(obstacles.support);
+            meter.distance_queries(query.queries.max(1))?;
+        }
+        Ok(())
+    }
+
+    /// Collects touches with everything else.
+    fn collect_others(
+        &mut self,
+        at: &Placement,
+        found: &mut impl Collector,
+        meter: &mut Meter,
+    ) -> Result<(), Stop> {
+        if self.is_bare() {
+            return Ok(());
+        }
+        let Self { moving, obstacles, track, .. } = self;
+        let pose = &at.pose(&moving.centre);
+        if let Some(body) = &moving.body {
+            let mut query = ObjectQuery::new(body, pose, found, Some(meter));
             if let Some(scene) = &obstacles.scene {
                 query.unless_asleep(track, 0, |query| query.scene(scene, obstacles.scene_radius));
             }
@@ -277,13 +420,11 @@ impl<'a> Space<'a> {
                     query.surface(hung.object.surface(), &hung.pose, Obstacle::Hung(index));
                 });
             }
-            // What is far from everything counts as well, here and below, so that a work limit ends the longest way.
-            let queries = query.queries.max(1);
+            let queries = query.queries;
             meter.distance_queries(queries)?;
         }
         for part in moving.gripper.iter().flat_map(|gripper| gripper.parts).enumerate() {
             let mut query = CapsuleQuery::new(part, moving.opening, pose, found);
-            query.supporter(obstacles.support);
             if let Some(scene) = &obstacles.scene {
                 query.scene(scene, obstacles.scene_radius);
             }
@@ -295,7 +436,7 @@ impl<'a> Space<'a> {
             if let Some((body, pose)) = &obstacles.rested {
                 query.field(body.field, pose, Obstacle::Object);
             }
-            meter.distance_queries(query.queries.max(1))?;
+            meter.distance_queries(query.queries)?;
         }
         Ok(())
     }
@@ -310,7 +451,7 @@ impl<'a> Space<'a> {
         required: f32,
         meter: &mut Meter,
     ) -> Result<Way, Stop> {
-        let travel = leg.travel(self.moving.reach).max(1e-9);
+        let travels = self.travels(from, leg);
         let mut way = Way { share: 0.0, clearance: MAX_CLEARANCE };
         let (mut place, mut share) = (*from, 0.0);
         for _ in 0..MAX_STEPS {
@@ -318,23 +459,61 @@ impl<'a> Space<'a> {
             if room < 0.0 {
                 return Ok(way);
             }
-            let known = self.last.filter(|(last, distance)| *last == place && *distance >= required);
-            let distance = match known {
-                Some((_, distance)) => distance,
-                None => match self.distance_if_free(&place, required, meter)? {
-                    Some(distance) => distance,
-                    None => return Ok(way),
-                },
+            let known = self.last.filter(|(last, distances)| *last == place && distances.least() >= required);
+            let distances = match known {
+                Some((_, distances)) => distances,
+                None => self.distances(&place, required, meter)?,
             };
-            self.last = Some((place, distance));
-            way = Way { share, clearance: way.clearance.min(distance) };
+            if distances.least() < required {
+                return Ok(way);
+            }
+            self.last = Some((place, distances));
+            way = Way { share, clearance: way.clearance.min(distances.least()) };
             if share >= 1.0 {
                 return Ok(way);
             }
-            let step = (distance - 0.5 * required).min(room).max(LEAST_STEP);
-            share = (share + step / travel).min(1.0);
+            let in_room = Distances { others: distances.others.min(room), ..distances };
+            share =
+                (share + travels.share(&in_room, |distance| distance - 0.5 * required, LEAST_STEP)).min(1.0);
             place = from.after(leg, share);
         }
         Ok(way)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Vector;
+    use crate::random::Random;
+    use nalgebra::{Quaternion, UnitQuaternion};
+
+    #[test]
+    fn seen_from_what_moves_no_point_of_a_box_travels_farther_than_is_told() {
+        let mut random = Random::new(7);
+        let mut next = |size: f32| size * (2.0 * random.next_f32() - 1.0);
+        let aabb = Aabb { min: Point::new(-0.1, 0.0, 0.2), max: Point::new(0.3, 0.1, 0.5) };
+        let mut tightest = f32::INFINITY;
+        for _ in 0..300 {
+            let mut vector = |size: f32| Vector::new(next(size), next(size), next(size));
+            let (centre, shift, turn, part) = (vector(0.5), vector(0.3), vector(1.5), vector(0.5));
+            let rotation =
+                UnitQuaternion::new_normalize(Quaternion::new(next(1.0), next(1.0), next(1.0), 1.0));
+            let (from, leg) = (Placement::new(centre.into(), rotation), Leg { shift, turn });
+            let point = aabb.centre() + aabb.extents().component_mul(&part);
+            let seen = |share: f32| from.after(&leg, share).pose(&Point::origin()).inverse() * point;
+            let way: f32 =
+                (0..100).map(|k| (seen(k as f32 / 100.0) - seen((k + 1) as f32 / 100.0)).norm()).sum();
+            let told = travel_of_box(&aabb, &from, &leg);
+            assert!(way <= told + 1e-4, "{way} {told}");
+            tightest = tightest.min(told / way);
+        }
+        assert!(tightest < 1.2, "the bound is near to what some point travels: {tightest}");
+        // A ring turns about a bar: the bar stays where it is, whatever the reach of the ring.
+        let bar = Aabb { min: Point::new(-0.05, -0.001, -0.001), max: Point::new(0.05, 0.001, 0.001) };
+        let from = Placement::new(Point::new(0.0, 0.0, -0.3), UnitQuaternion::identity());
+        let turn = Vector::x() * 0.1;
+        let leg = Leg { shift: turn.cross(&Vector::new(0.0, 0.0, -0.3)), turn };
+        assert!(leg.travel(0.3) > 0.05 && travel_of_box(&bar, &from, &leg) < 0.005);
     }
 }

@@ -12,7 +12,7 @@ use nalgebra::Rotation3;
 /// Most halvings of a triangle until it is as small as distances are told.
 const MAX_HALVINGS: usize = 24;
 /// Radius of a piece of a triangle that is not halved any more, metres: its corners tell its distance.
-const SMALLEST_PIECE: f32 = 0.001;
+pub(super) const SMALLEST_PIECE: f32 = 0.001;
 /// The same where all that is near is told, and not only the nearest: what is as near to each other is told once.
 const SMALLEST_OF_ALL: f32 = 0.0025;
 

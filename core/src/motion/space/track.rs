@@ -1,9 +1,10 @@
 //! What has been learnt from the poses before: how near each part of the supporter may be by now.
 
+use super::Travels;
 use crate::hanging::MAX_HUNG;
 use crate::mechanics::Support;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
-use crate::motion::placement::Placement;
+use crate::motion::placement::{Leg, Placement};
 use crate::perception::far_side;
 
 /// Lower bounds of the distances of the supporter's patches and groups of patches from the object.
@@ -20,8 +21,10 @@ pub(in crate::motion) struct Track<'s> {
     /// The patch that was the nearest, which is likely to be it again.
     pub(super) nearest: usize,
     at: Option<Placement>,
-    /// How far the object has travelled, metres: for each of its points this is an upper bound.
+    /// How far the object has travelled, metres: an upper bound for what of it may touch the supporter.
     pub(super) travelled: f32,
+    /// The same for what may touch the scene and what hangs already.
+    of_others: f32,
 }
 
 /// The scene, and what hangs already.
@@ -44,7 +47,15 @@ impl<'s> Track<'s> {
     /// For what has no distance field.
     pub(super) fn none() -> Self {
         let others = [f32::NEG_INFINITY; OTHERS];
-        Self { groups: &mut [], patches: &mut [], others, nearest: 0, at: None, travelled: MAX_TRAVEL }
+        Self {
+            groups: &mut [],
+            patches: &mut [],
+            others,
+            nearest: 0,
+            at: None,
+            travelled: MAX_TRAVEL,
+            of_others: 0.0,
+        }
     }
 
     /// The memory of the patches, for other use: nothing is known of what is near any more.
@@ -53,14 +64,16 @@ impl<'s> Track<'s> {
         bytemuck::cast_slice_mut(self.patches)
     }
 
-    /// Moves on to a placement of an object of this reach.
-    pub(super) fn move_to(&mut self, at: &Placement, reach: f32) {
+    /// Moves on to a placement; `travels` tells the travels of a leg from the placement before.
+    pub(super) fn move_to(&mut self, at: &Placement, travels: impl Fn(&Placement, &Leg) -> Travels) {
         if let Some(before) = self.at {
-            self.travelled += before.leg_to(at).travel(reach);
+            let travels = travels(&before, &before.leg_to(at));
+            self.travelled += travels.supporter;
+            self.of_others += travels.others;
         }
         self.at = Some(*at);
-        if self.travelled >= MAX_TRAVEL {
-            self.travelled = 0.0;
+        if self.travelled.max(self.of_others) >= MAX_TRAVEL {
+            (self.travelled, self.of_others) = (0.0, 0.0);
             self.groups.fill(f32::NEG_INFINITY);
             self.patches.fill(f32::NEG_INFINITY);
             self.others.fill(f32::NEG_INFINITY);
@@ -69,13 +82,18 @@ impl<'s> Track<'s> {
 
     /// Whether the scene, 0, or an object that hangs, counted from 1, may be closer than `limit` metres.
     pub(super) fn is_awake(&self, other: usize, limit: f32) -> bool {
-        self.others.get(other).is_none_or(|until| until - self.travelled < limit)
+        self.bound(other) < limit
+    }
+
+    /// Lower bound of the distance of one of these, metres.
+    pub(super) fn bound(&self, other: usize) -> f32 {
+        self.others.get(other).map_or(f32::NEG_INFINITY, |until| until - self.of_others)
     }
 
     /// Notes the distance of one of these, metres.
     pub(super) fn note(&mut self, other: usize, distance: f32) {
         if let Some(until) = self.others.get_mut(other) {
-            *until = self.travelled + distance;
+            *until = self.of_others + distance;
         }
     }
 }
