@@ -27,7 +27,7 @@ pub(crate) fn first_within(
         let gap = field.distance(point) - radius;
         (gap <= clearance).then_some(gap)
     };
-    let is_point_clear = |point: &Point| ball_gap(point, 0.0, true).is_none();
+    let is_point_clear = |point: &Point| field.distance(point) > clearance;
     first_hit(scene, pose, clearance, ball_gap, is_point_clear, |_, _| false, meter)
 }
 
@@ -182,9 +182,9 @@ fn first_on_surface(
 /// [`PATCH_PENETRATION`], or the centre of a patch of a bar or plane that `is_crossed` by the object, by its index and its centre.
 ///
 /// The closures take object coordinates. `ball_gap` is `None` if every point within a radius of a point is clear, otherwise how
-/// close such a ball may come to the object, metres; it is told whether the ball is that of a leaf, the points of which come next; where that is least is looked first, since most poses that are tested
-/// collide. It prunes the tree, as does the distance to the bounding sphere: everything farther than `distance` metres from it
-/// is clear.
+/// close such a ball may come to the object, metres; where that is least is looked first, since most poses that are tested
+/// collide. It is told whether the ball is that of a leaf, whose points come next. It prunes the tree, as does the distance to
+/// the bounding sphere: everything farther than `distance` metres from it is clear.
 fn first_hit(
     (body, support): (&Body, &Support),
     pose: &Pose,

@@ -300,15 +300,10 @@ impl<'a> Planner<'_, 'a, '_> {
                 }
             }
             // Once a route was not free, the next one is tested before it is shortened, which costs more.
-            let mut tested = None::<f32>;
-            if has_failed {
-                match certify(search.space, found, self.meter)? {
-                    Ok(clearance) => tested = Some(clearance),
-                    Err(leg) => {
-                        search.cut_off(leg);
-                        continue;
-                    }
-                }
+            let tested = if has_failed { Some(certify(search.space, found, self.meter)?) } else { None };
+            if let Some(Err(leg)) = tested {
+                search.cut_off(leg);
+                continue;
             }
             short.copy_from(found);
             let kept = (search.required, motion.clearance);
@@ -321,7 +316,7 @@ impl<'a> Planner<'_, 'a, '_> {
             }
             // What the search found has been accepted.
             let of_found = match tested {
-                Some(clearance) => Ok(clearance),
+                Some(tested) => tested,
                 None => certify(search.space, found, self.meter)?,
             };
             match of_found {

@@ -1,6 +1,6 @@
 //! What has been learnt from the poses before: how near each part of the supporter may be by now.
 
-use super::Travels;
+use super::travel::Travels;
 use crate::hanging::MAX_HUNG;
 use crate::mechanics::Support;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
