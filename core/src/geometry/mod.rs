@@ -20,7 +20,7 @@ pub use distance_field::DistanceField;
 pub(crate) use queries::{Nearest, Node, PointTreeSlots};
 pub use queries::{Neighbour, PointTree, Surface, hull};
 pub use shapes::{Aabb, Cloud, CloudError, MAX_COUNT, MassProperties, Mesh, MeshError};
-pub(crate) use shapes::{closest_point_on_triangle, halves, scaled_normal};
+pub(crate) use shapes::{ball_on, closest_point_on_triangle, halves, longest_side_first, scaled_normal};
 pub(crate) use statistics::{
     eigenvectors, least_eigenvector, linked_cluster, mean_shift, principal_direction,
 };

@@ -6,7 +6,7 @@ use super::constants::{
 use super::patch::Patch;
 use super::touch::nearest_on_patch;
 use super::{Body, Support};
-use crate::geometry::{Point, Pose, Vector, unit_or};
+use crate::geometry::{Node, Point, Pose, Vector, unit_or};
 use crate::monitor::{Meter, Stop};
 use core::cell::Cell;
 
@@ -23,12 +23,13 @@ pub(crate) fn first_within(
     let field = scene.0.field;
     // Beyond the band the field is only a lower bound of the distance.
     let clearance = clearance.min(FIELD_BAND_RATIO * field.band());
-    let ball_gap = |point: &Point, radius: f32, _| {
+    let ball_gap = |point: &Point, radius: f32| {
         let gap = field.distance(point) - radius;
         (gap <= clearance).then_some(gap)
     };
-    let is_point_clear = |point: &Point| field.distance(point) > clearance;
-    first_hit(scene, pose, clearance, ball_gap, is_point_clear, |_, _| false, meter)
+    let leaf_distance = |_: &Point, _: f32| Some(f32::NEG_INFINITY);
+    let is_point_clear = |point: &Point, _: f32| field.distance(point) > clearance;
+    first_hit(scene, pose, clearance, (ball_gap, leaf_distance), is_point_clear, |_, _| false, meter)
 }
 
 /// Whether the supporter is clear of the object's surface at `pose`. Three conditions must hold:
@@ -129,6 +130,9 @@ pub(crate) fn is_closer(
     Ok(found)
 }
 
+/// Rounding of distances between points of an object, metres, with a large margin.
+const LEAF_ERROR: f32 = 1e-5;
+
 /// A point of the supporter that contradicts [`is_off_surface`], where bars are taken to reach surfaces that are `beyond` metres from
 /// them at most.
 fn first_on_surface(
@@ -139,13 +143,23 @@ fn first_on_surface(
 ) -> Result<Option<Point>, Stop> {
     let (field, surface, support) = (scene.0.field, scene.0.surface, scene.1);
     let (thin, greatest) = (0.5 * support.reach, clearance.max(support.reach));
-    let ball_gap = |point: &Point, radius: f32, is_leaf: bool| {
-        let range = radius + greatest;
-        // A bound that the field gives will do for what is looked at more closely.
-        let is_near = field.distance(point) <= range + field.excess();
-        (is_near && (!is_leaf || surface.is_within(point, range))).then_some(0.0)
+    // A bound that the field gives will do for what is looked at more closely.
+    let ball_gap = |point: &Point, radius: f32| {
+        (field.distance(point) <= radius + greatest + field.excess()).then_some(0.0)
     };
-    let is_point_clear = |point: &Point| {
+    // The mesh is no farther from the next leaf than from the one before, and the way from the one to the other.
+    let before = Cell::new((Point::origin(), f32::INFINITY));
+    let leaf_distance = |point: &Point, radius: f32| {
+        let (other, of_other) = before.get();
+        let range = (radius + greatest).min(of_other + (other - point).norm() + LEAF_ERROR);
+        let distance = (surface.closest_point_within(point, range)? - point).norm();
+        before.set((*point, distance));
+        Some(distance)
+    };
+    let is_point_clear = |point: &Point, at_least: f32| {
+        if at_least > clearance.max(thin) {
+            return true;
+        }
         let is_far_by_field = field.distance(point) > thin + FIELD_ERROR * field.voxel_size();
         !surface.is_within(point, if is_far_by_field { clearance.max(thin) } else { clearance })
     };
@@ -174,7 +188,7 @@ fn first_on_surface(
             || beyond > 0.0
                 && support.is_crossed_between(index, |from, to| crosses(&(inverse * from), &(inverse * to)))
     };
-    first_hit(scene, pose, greatest, ball_gap, is_point_clear, is_crossed, meter)
+    first_hit(scene, pose, greatest, (ball_gap, leaf_distance), is_point_clear, is_crossed, meter)
 }
 
 /// Returns the first part of the supporter that is not clear of the object: a point for which
@@ -183,14 +197,15 @@ fn first_on_surface(
 ///
 /// The closures take object coordinates. `ball_gap` is `None` if every point within a radius of a point is clear, otherwise how
 /// close such a ball may come to the object, metres; where that is least is looked first, since most poses that are tested
-/// collide. It is told whether the ball is that of a leaf, whose points come next. It prunes the tree, as does the distance to
-/// the bounding sphere: everything farther than `distance` metres from it is clear.
+/// collide. It prunes the tree, as does the distance to the bounding sphere: everything farther than `distance` metres from it is
+/// clear. `leaf_distance` takes the ball of a leaf, and is `None` likewise, otherwise a lower bound of the distance of its centre from the
+/// object; from that follows the one that `is_point_clear` is told of each point of the leaf.
 fn first_hit(
     (body, support): (&Body, &Support),
     pose: &Pose,
     distance: f32,
-    ball_gap: impl Fn(&Point, f32, bool) -> Option<f32>,
-    is_point_clear: impl Fn(&Point) -> bool,
+    (ball_gap, leaf_distance): (impl Fn(&Point, f32) -> Option<f32>, impl Fn(&Point, f32) -> Option<f32>),
+    is_point_clear: impl Fn(&Point, f32) -> bool,
     is_crossed: impl Fn(usize, &Point) -> bool,
     meter: &mut Meter,
 ) -> Result<Option<Point>, Stop> {
@@ -212,22 +227,27 @@ fn first_hit(
     };
     let (mut found, queries) = (None::<Point>, Cell::new(0));
     let count = |some: usize| queries.set(queries.get() + some);
+    let ball = |node: &Node| {
+        let aabb = node.aabb();
+        (to_object(&aabb.centre()), 0.5 * aabb.diagonal())
+    };
     support.tree.bvh().visit_ordered(
         &mut found,
         |_, node| {
-            let aabb = node.aabb();
-            let (centre, radius) = (to_object(&aabb.centre()), 0.5 * aabb.diagonal());
+            let (centre, radius) = ball(node);
             count(1);
-            if body.is_beyond(&centre, radius + distance) {
-                None
-            } else {
-                ball_gap(&centre, radius, node.items().is_some())
-            }
+            if body.is_beyond(&centre, radius + distance) { None } else { ball_gap(&centre, radius) }
         },
         |found| if found.is_some() { f32::NEG_INFINITY } else { f32::INFINITY },
-        |found, items| {
+        |found, items, leaf| {
+            let (centre, radius) = ball(leaf);
+            count(1);
+            let Some(of_centre) = leaf_distance(&centre, radius) else { return };
             count(items.len());
-            let is_hit = |index: &usize| !is_point_clear(&to_object(&points[*index]));
+            let is_hit = |index: &usize| {
+                let at = to_object(&points[*index]);
+                !is_point_clear(&at, of_centre - (at - centre).norm())
+            };
             let hit = items.clone().find(is_hit).map(|index| points[index]);
             *found = hit.or_else(|| support.patches_of(&items).find_map(hit_of_patch));
         },

@@ -1,7 +1,7 @@
 //! Things that the object must not touch: points of a scene, and other objects.
 
 use super::Body;
-use crate::geometry::{Point, Pose, Surface, halves};
+use crate::geometry::{Point, Pose, Surface, halves, longest_side_first};
 use crate::monitor::{Meter, Stop};
 
 /// Most halvings of a triangle until it is as small as the clearance is tested.
@@ -83,7 +83,7 @@ fn is_clear_of_triangle(body: &Body, triangle: [Point; 3], clearance: f32, queri
         if radius < SMALLEST_PIECE || waiting.len() + 2 > MAX_HALVINGS {
             continue;
         }
-        for half in halves([a, b, c]) {
+        for half in halves(longest_side_first([a, b, c])) {
             let _ = waiting.push(half);
         }
     }

@@ -4,7 +4,6 @@
 //! simulation it follows the bar.
 
 use super::enclosed;
-use super::failure::Obstacle;
 use super::permit::Permit;
 use super::placement::{Leg, Placement};
 use super::route::Route;
@@ -85,13 +84,12 @@ impl Search<'_, '_, '_> {
         let (mut at, mut direction, mut without, mut farthest) = (0, direction, 0, 0.0_f32);
         for pull in 1..=ALONG_BAR {
             let here = self.trees[GOAL].placement(at).pose(&centre) * point;
-            let touches = self.touches(at, LEADING_RANGE, meter)?;
+            let mut touches = self.touches(at, LEADING_RANGE, meter)?;
             let support = self.space.obstacles.support;
-            let bars = touches
-                .iter()
-                .filter_map(|touch| Some((support.bar_near(&touch.at, &touch.normal)?, touch.at)));
-            let nearest = bars.min_by(|(_, a), (_, b)| (a - here).norm().total_cmp(&(b - here).norm()));
-            if let Some((bar, _)) = nearest {
+            let away = |touch: &Touch| (touch.at - here).norm_squared();
+            touches.sort_unstable_by(|a, b| away(a).total_cmp(&away(b)));
+            let nearest = touches.iter().find_map(|touch| support.bar_near(&touch.at, &touch.normal));
+            if let Some(bar) = nearest {
                 direction = if bar.dot(&direction) < 0.0 { -bar } else { bar };
             }
             // Off the bar, the samples lead on.
@@ -190,20 +188,30 @@ impl Search<'_, '_, '_> {
         meter: &mut Meter,
     ) -> Result<Option<usize>, Stop> {
         let (moving, support) = (self.space.moving, self.space.obstacles.support);
+        let place = self.trees[GOAL].placement(from);
+        // Where nothing is in the way, the simulation would do no other.
+        let straight = Leg { shift: direction * travel, turn: Vector::zeros() };
+        let way = self.space.way(&place, &straight, ASIDE_EXCESS * self.required, meter)?;
+        if way.is_free() {
+            return Ok(self.add(GOAL, place.after(&straight, 1.0), from, way.clearance, permit));
+        }
         let sleepers = Support::sleepers(support.patches.len());
         let (Some(body), Some(scratch)) = (moving.body, &mut self.scratch) else { return Ok(None) };
         let mut arena = scratch.scratch();
         let Some(sleeps) = arena.unset(sleepers).ok().filter(|sleeps| sleeps.len() <= MAX_SLEEPERS) else {
             return Ok(None);
         };
-        let place = self.trees[GOAL].placement(from);
         let pull = Pull { direction, at, travel, gap: ASIDE_EXCESS * self.required };
         let pose = pulled((&body, support), &place.pose(&moving.centre), &pull, self.params, sleeps, meter)?;
         let mut target = Placement::of(&pose, &moving.centre);
         // The simulation is no more exact than the distance field.
         let keep = (ASIDE_EXCESS * self.required, self.trees[GOAL].metric().radius);
         for _ in 0..CORRECTIONS {
-            target = target.after(&aside(self.space, &target, &Leg::NONE, keep, meter)?, 1.0);
+            let off = aside(self.space, &target, &Leg::NONE, keep, meter)?;
+            if off.travel(moving.reach) == 0.0 {
+                break;
+            }
+            target = target.after(&off, 1.0);
         }
         if place.leg_to(&target).travel(moving.reach) < LEAST_TRAVEL {
             return Ok(None);
@@ -223,8 +231,7 @@ impl Search<'_, '_, '_> {
     ) -> Result<Vec<Touch, { Touches::CAPACITY }>, Stop> {
         let mut touches = Touches::within(range);
         let place = self.trees[GOAL].placement(node);
-        self.space.collect(&place, &mut touches, meter)?;
-        touches.list.retain(|touch| touch.obstacle == Obstacle::Supporter);
+        self.space.collect_on_supporter(&place, &mut touches, meter)?;
         Ok(touches.list)
     }
 }

@@ -361,7 +361,7 @@ impl Search<'_, '_, '_> {
     }
 
     /// Adds a node, unless it is outside of the region, the tree is full or the caller, who has refused others, refuses it.
-    fn add(
+    pub(super) fn add(
         &mut self,
         tree: usize,
         placement: Placement,

@@ -27,8 +27,10 @@ const END: f64 = 0.05;
 /// - Holes over several bars must come off all of them at once, which is not told.
 /// - A closed hole around a bar without a free end is linked with it. Without a wall, it may come over the plates at its
 ///   ends, which is not told.
-/// - Everything else comes from the open side: a hook over the bar, a hollow over the end, a neck between two free ends, and
-///   what lies on top from above.
+/// - A hook comes from its open side over a wire that is thinner than its mouth. A thicker one cannot pass the mouth, and whether the
+///   hook comes over an end of it is not told.
+/// - Everything else comes from the open side: a hollow over the end, a neck between two free ends, and what lies on top from
+///   above.
 pub fn insertion(
     joints: &[Joint],
     openings: &[Opening],
@@ -58,6 +60,9 @@ pub fn insertion(
             let is_between = low < -END && high > END;
             if is_closed && is_between { Insertion::Impossible } else { Insertion::Unknown }
         }
+        OpeningKind::Hook if joint.wire_radius.is_some_and(|radius| radius >= opening.clear_radius) => {
+            Insertion::Unknown
+        }
         OpeningKind::Hook | OpeningKind::Rim | OpeningKind::Neck { .. } => Insertion::Possible,
     }
 }
@@ -81,6 +86,7 @@ mod tests {
                     opening,
                     bar,
                     is_on_bar: true,
+                    wire_radius: Some(tree.bars[bar].radius),
                     at: tree.bars[bar].position,
                 })
                 .collect()
@@ -90,5 +96,26 @@ mod tests {
         assert_eq!(told(&on([0, 0])), Insertion::Possible);
         assert_eq!(told(&on([0, 1])), Insertion::Unknown);
         assert_eq!(told(&[]), Insertion::Possible);
+    }
+
+    #[test]
+    fn a_hook_comes_over_a_wire_that_is_thinner_than_its_mouth() {
+        let supporter = SUPPORTERS.iter().find(|kind| kind.name == "S hook").unwrap().make(1);
+        let hanger = OBJECTS.iter().find(|kind| kind.name == "clothes hanger").unwrap().make(1);
+        let hook = hanger.openings.iter().position(|opening| opening.kind == OpeningKind::Hook).unwrap();
+        let clear = hanger.openings[hook].clear_radius;
+        let told = |radius: f32| {
+            let joint = Joint {
+                kind: Kind::Hooked,
+                opening: hook,
+                bar: 0,
+                is_on_bar: false,
+                wire_radius: Some(radius),
+                at: supporter.bars[0].position,
+            };
+            insertion(&[joint], &hanger.openings, (&supporter.solid, &supporter.bars), false)
+        };
+        assert_eq!(told(0.99 * clear), Insertion::Possible);
+        assert_eq!(told(1.01 * clear), Insertion::Unknown);
     }
 }

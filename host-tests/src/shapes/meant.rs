@@ -59,6 +59,8 @@ pub struct Joint {
     pub bar: usize,
     /// Whether that bar is a part of the wire that passes the opening: nothing tells the ends of any other wire.
     pub is_on_bar: bool,
+    /// Radius of the wire that passes the opening, m; `None` for a hollow and a neck, which no single wire passes.
+    pub wire_radius: Option<f32>,
     /// The place, in supporter coordinates, m.
     pub at: [f32; 3],
 }
@@ -90,8 +92,9 @@ pub fn joints(object: (&Solid, &[Opening]), supporter: (&Solid, &[Bar]), rest: &
         };
         let (bar, nearest) = supporter.1.iter().enumerate().min_by(nearest)?;
         let is_on_bar = segment.is_none_or(|segment| lines.is_same_wire(segment, nearest));
-        let at = super::vector::single(at);
-        Some(Joint { kind: opening.kind.hangs(), opening: index, bar, is_on_bar, at })
+        let wire_radius = segment.map(|segment| lines.segments[segment].1 as f32);
+        let (kind, at) = (opening.kind.hangs(), super::vector::single(at));
+        Some(Joint { kind, opening: index, bar, is_on_bar, wire_radius, at })
     });
     let mut joints: Vec<_> = joints.collect();
     joints.sort_by_key(|joint| rank(&joint.kind));

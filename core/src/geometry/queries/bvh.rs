@@ -252,13 +252,13 @@ impl<'m> Bvh<'m> {
 
     /// Visits the leaves that may hold something nearer than a limit, nearer ones first. `state` is handed to the closures:
     /// `bound` gives a lower bound of the distance of everything in a node, or `None` if the node does not matter, `limit` the
-    /// limit, which may shrink, and `visit` takes the items of a leaf.
+    /// limit, which may shrink, and `visit` takes the items of a leaf, and the leaf.
     pub(crate) fn visit_ordered<S>(
         &self,
         state: &mut S,
         mut bound: impl FnMut(&mut S, &Node) -> Option<f32>,
         limit: impl Fn(&S) -> f32,
-        mut visit: impl FnMut(&mut S, core::ops::Range<usize>),
+        mut visit: impl FnMut(&mut S, core::ops::Range<usize>, &Node),
     ) {
         let mut stack = heapless::Vec::<(u32, f32), { MAX_DEPTH + 2 }>::new();
         let mut next = bound(state, &self.nodes[0]).map(|at| (0, at));
@@ -267,7 +267,7 @@ impl<'m> Bvh<'m> {
             next = None;
             if at < limit(state) {
                 if let Some(items) = node.items() {
-                    visit(state, items);
+                    visit(state, items, node);
                 } else {
                     let [left, right] = node
                         .children()

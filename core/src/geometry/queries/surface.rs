@@ -171,6 +171,9 @@ impl<'m> Surface<'m> {
         let mut closest = None;
         self.bvh.visit_near(point, radius * radius, |items, mut limit| {
             for corners in &self.triangles[items] {
+                if !triangle::may_be_within(corners, point, limit) {
+                    continue;
+                }
                 let candidate = triangle::closest_point(corners, point);
                 let distance = (candidate - point).norm_squared();
                 if distance < limit {
@@ -186,10 +189,11 @@ impl<'m> Surface<'m> {
     pub fn is_within(&self, point: &Point, radius: f32) -> bool {
         let mut within = false;
         self.bvh.visit_near(point, radius * radius, |items, limit| {
-            within = within
-                || self.triangles[items]
-                    .iter()
-                    .any(|t| (triangle::closest_point(t, point) - point).norm_squared() < limit);
+            let is_near = |t: &[Point; 3]| {
+                triangle::may_be_within(t, point, limit)
+                    && (triangle::closest_point(t, point) - point).norm_squared() < limit
+            };
+            within = within || self.triangles[items].iter().any(is_near);
             if within { -1.0 } else { limit }
         });
         within

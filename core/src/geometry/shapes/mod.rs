@@ -11,4 +11,4 @@ pub use cloud::{Cloud, CloudError};
 pub use mass::MassProperties;
 pub use mesh::{MAX_COUNT, Mesh, MeshError};
 pub(crate) use triangle::closest_point as closest_point_on_triangle;
-pub(crate) use triangle::{halves, scaled_normal};
+pub(crate) use triangle::{ball_on, halves, longest_side_first, scaled_normal};

@@ -71,16 +71,49 @@ pub(crate) fn solid_angle([a, b, c]: &[Point; 3], p: &Point) -> f32 {
 /// Tangents up to this are small enough for three terms of the arc tangent's series.
 const SERIES: f32 = 0.1;
 
-/// The two halves of a triangle, cut across its longest side.
+/// Whether the triangle may come closer to `p` than a distance, given by its square: told by its plane, which costs less than the closest
+/// point, and is farther away in most cases.
+pub(crate) fn may_be_within([a, b, c]: &[Point; 3], p: &Point, squared: f32) -> bool {
+    let (ab, ac) = (b - a, c - a);
+    let normal = ab.cross(&ac);
+    let (height, normal_squared) = (normal.dot(&(p - a)), normal.norm_squared());
+    let has_plane = normal_squared > LEAST_SINE * LEAST_SINE * ab.norm_squared() * ac.norm_squared();
+    !has_plane || height * height <= PLANE_ERROR * squared * normal_squared
+}
+
+/// Sine of the angle at a corner below which a triangle is too thin to tell its plane: it is off by some 1e-5 rad there.
+const LEAST_SINE: f32 = 0.01;
+/// By how much the square of the distance from the plane must be greater than that of the distance that is asked for: the plane is off by
+/// as much at five thousand times that distance.
+const PLANE_ERROR: f32 = 1.1;
+
+/// A point of a triangle, the longest side of which is between the first two corners, and the radius of the ball about it that holds the
+/// triangle: the centroid, or the middle of the longest side where that ball is smaller, as it is for thin triangles.
+pub(crate) fn ball_on([a, b, c]: &[Point; 3]) -> (Point, f32) {
+    let centroid = Point::from((a.coords + b.coords + c.coords) / 3.0);
+    let ball = |centre: Point| {
+        let squared = |corner: &Point| (corner - centre).norm_squared();
+        (centre, squared(a).max(squared(b)).max(squared(c)))
+    };
+    let (around, beside) = (ball(centroid), ball(nalgebra::center(a, b)));
+    let (centre, squared) = if beside.1 < around.1 { beside } else { around };
+    (centre, libm::sqrtf(squared))
+}
+
+/// The two halves of a triangle, cut across the side between the first two corners.
 pub(crate) fn halves([a, b, c]: [Point; 3]) -> [[Point; 3]; 2] {
+    let middle = nalgebra::center(&a, &b);
+    [[a, middle, c], [middle, b, c]]
+}
+
+/// The corners in the same order, so that the longest side is between the first two.
+pub(crate) fn longest_side_first([a, b, c]: [Point; 3]) -> [Point; 3] {
     let sides = [(a - b).norm_squared(), (b - c).norm_squared(), (c - a).norm_squared()];
-    let [a, b, c] = match sides {
+    match sides {
         [ab, bc, ca] if ab >= bc && ab >= ca => [a, b, c],
         [_, bc, ca] if bc >= ca => [b, c, a],
         _ => [c, a, b],
-    };
-    let middle = nalgebra::center(&a, &b);
-    [[a, middle, c], [middle, b, c]]
+    }
 }
 
 #[cfg(test)]
@@ -139,6 +172,45 @@ mod tests {
                 let p = Point::from((a + (b - a) * t + out).cast::<f32>());
                 let distance = f64::from((closest_point(&corners, &p) - p).norm());
                 assert!((distance - height.abs()).abs() < 1e-6, "{width} {turn}: {distance} {height}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_triangle_that_is_within_a_distance_may_be() {
+        let mut random = crate::random::Random::new(5);
+        let mut told = 0;
+        for width in [1.0, 1e-2, 1e-4, 1e-6] {
+            for _ in 0..2000 {
+                let mut point = || Point::from([(); 3].map(|()| random.next_f32()));
+                let (a, b, p) = (point(), point(), point());
+                let corners = [a, b, a + (b - a) * 0.7 + (point() - b) * width];
+                let distance = (closest_point(&corners, &p) - p).norm();
+                let may_be =
+                    |share: f32| may_be_within(&corners, &p, (share * distance) * (share * distance));
+                assert!(may_be(1.001) && may_be(2.0), "{corners:?} {p}");
+                told += u32::from(!may_be(0.3));
+            }
+        }
+        // Above its face, the plane of a triangle tells.
+        assert!(told > 500, "{told}");
+    }
+
+    #[test]
+    fn the_ball_on_a_triangle_holds_it_and_is_small() {
+        let mut random = crate::random::Random::new(6);
+        for width in [1.0, 0.1, 1e-3] {
+            for _ in 0..2000 {
+                let mut point = || Point::from([(); 3].map(|()| random.next_f32()));
+                let (a, b) = (point(), point());
+                let corners = longest_side_first([a, b, a + (b - a) * 0.7 + (point() - b) * width]);
+                let (centre, radius) = ball_on(&corners);
+                let farthest = corners.map(|corner| (corner - centre).norm()).into_iter().fold(0.0, f32::max);
+                assert!((farthest - radius).abs() < 1e-6, "{farthest} {radius}");
+                assert!((closest_point(&corners, &centre) - centre).norm() < 1e-6);
+                let [a, b, _] = corners;
+                // No ball that holds the longest side is smaller than half of it.
+                assert!(radius < 1.3 * 0.5 * (a - b).norm(), "{corners:?} {radius}");
             }
         }
     }

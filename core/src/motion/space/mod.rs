@@ -325,7 +325,18 @@ impl<'a> Space<'a> {
         self.collect_others(at, found, meter)
     }
 
-    /// Collects touches with the supporter.
+    /// Collects touches of whatever moves with the supporter alone.
+    pub(super) fn collect_on_supporter(
+        &mut self,
+        at: &Placement,
+        found: &mut impl Collector,
+        meter: &mut Meter,
+    ) -> Result<(), Stop> {
+        self.move_to(at, meter);
+        self.collect_supporter(at, found, meter)
+    }
+
+    /// The same at the placement that was moved to.
     fn collect_supporter(
         &mut self,
         at: &Placement,

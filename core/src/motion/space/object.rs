@@ -3,7 +3,9 @@
 use super::touch::{Collector, Nearest, Touch};
 use super::track::Track;
 use super::{EXACT_UP_TO, PATCH_RANGE};
-use crate::geometry::{Aabb, Node, Point, PointTree, Pose, Surface, Vector, halves, unit_or};
+use crate::geometry::{
+    Aabb, Node, Point, PointTree, Pose, Surface, Vector, ball_on, halves, longest_side_first, unit_or,
+};
 use crate::mechanics::{Body, Gap, Support, fall_over, gap_to_patch};
 use crate::monitor::Meter;
 use crate::motion::failure::{Mover, Obstacle};
@@ -162,7 +164,7 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
         let bound = |query: &mut Self, node: &Node| {
             query.bound_of_box(&node.aabb(), &to_object, radius, Obstacle::Scene(0))
         };
-        scene.bvh().visit_ordered(self, bound, Self::limit, |query, items| {
+        scene.bvh().visit_ordered(self, bound, Self::limit, |query, items, _| {
             for index in items {
                 let at = to_object * scene.points()[index];
                 query.queries += 1;
@@ -176,7 +178,7 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
     pub(super) fn surface(&mut self, surface: &Surface, pose: &Pose, obstacle: Obstacle) {
         let between = self.to_object * pose;
         let bound = |query: &mut Self, node: &Node| query.bound_of_box(&node.aabb(), &between, 0.0, obstacle);
-        surface.bvh().visit_ordered(self, bound, Self::limit, |query, items| {
+        surface.bvh().visit_ordered(self, bound, Self::limit, |query, items, _| {
             for triangle in &surface.triangles()[items] {
                 query.triangle(triangle.map(|corner| between * corner), obstacle);
             }
@@ -221,9 +223,8 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
     /// A piece of a triangle with this unit normal, and a lower bound of its distance or, for all that is near, an estimate; `None`
     /// if the piece need not be looked at.
     fn piece(&mut self, corners: [Point; 3], normal: &Vector, obstacle: Obstacle) -> Option<(Piece, f32)> {
-        let [a, b, c] = corners;
-        let centre = Point::from((a.coords + b.coords + c.coords) / 3.0);
-        let radius = corners.iter().map(|corner| (corner - centre).norm()).fold(0.0, f32::max);
+        let corners = longest_side_first(corners);
+        let (centre, radius) = ball_on(&corners);
         let mut least = self.bound(&centre, radius, obstacle)?;
         let takes_all = self.found.takes_all();
         if takes_all || least + radius < self.limit {
@@ -242,6 +243,7 @@ impl<'q, 'a> ObjectQuery<'q, 'a> {
 
 /// A piece of a triangle in object coordinates, with the radius of the ball around it.
 struct Piece {
+    /// The longest side is between the first two.
     corners: [Point; 3],
     /// Metres.
     radius: f32,
