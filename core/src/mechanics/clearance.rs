@@ -130,8 +130,9 @@ pub(crate) fn is_closer(
     Ok(found)
 }
 
-/// Rounding of distances between points of an object, metres, with a large margin.
-const LEAF_ERROR: f32 = 1e-5;
+/// Rounding of distances between points within a few metres of the origin, metres: twenty times the spacing of numbers there. Where it is
+/// more, the distance of a leaf is looked for a second time.
+const ROUNDING: f32 = 1e-5;
 
 /// A point of the supporter that contradicts [`is_off_surface`], where bars are taken to reach surfaces that are `beyond` metres from
 /// them at most.
@@ -150,9 +151,10 @@ fn first_on_surface(
     // The mesh is no farther from the next leaf than from the one before, and the way from the one to the other.
     let before = Cell::new((Point::origin(), f32::INFINITY));
     let leaf_distance = |point: &Point, radius: f32| {
-        let (other, of_other) = before.get();
-        let range = (radius + greatest).min(of_other + (other - point).norm() + LEAF_ERROR);
-        let distance = (surface.closest_point_within(point, range)? - point).norm();
+        let ((other, of_other), range) = (before.get(), radius + greatest);
+        let expected = of_other + (other - point).norm() + ROUNDING;
+        let nearest = if expected < range { surface.closest_point_within(point, expected) } else { None };
+        let distance = (nearest.or_else(|| surface.closest_point_within(point, range))? - point).norm();
         before.set((*point, distance));
         Some(distance)
     };

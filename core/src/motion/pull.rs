@@ -189,7 +189,7 @@ impl Search<'_, '_, '_> {
     ) -> Result<Option<usize>, Stop> {
         let (moving, support) = (self.space.moving, self.space.obstacles.support);
         let place = self.trees[GOAL].placement(from);
-        // Where nothing is in the way, the simulation would do no other.
+        // Where nothing is in the way, the simulation would lead there as well.
         let straight = Leg { shift: direction * travel, turn: Vector::zeros() };
         let way = self.space.way(&place, &straight, ASIDE_EXCESS * self.required, meter)?;
         if way.is_free() {
