@@ -320,12 +320,11 @@ impl<'a> Space<'a> {
         found: &mut impl Collector,
         meter: &mut Meter,
     ) -> Result<(), Stop> {
-        self.move_to(at, meter);
-        self.collect_supporter(at, found, meter)?;
+        self.collect_on_supporter(at, found, meter)?;
         self.collect_others(at, found, meter)
     }
 
-    /// Collects touches of whatever moves with the supporter alone.
+    /// The same with the supporter alone.
     pub(super) fn collect_on_supporter(
         &mut self,
         at: &Placement,
