@@ -1,6 +1,6 @@
 //! The parameters of the method.
 
-use crate::geometry::{Point, Vector};
+use crate::geometry::Vector;
 
 /// Source of the object's centre of mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -240,15 +240,6 @@ impl Params {
     /// Unit vector opposite to gravity, in supporter coordinates.
     pub fn up(&self) -> Vector {
         -Vector::from(self.gravity).normalize()
-    }
-
-    /// Centre of mass in object coordinates, metres.
-    pub(crate) fn resolve_centre_of_mass(&self, sample_mean: Point, volume_centroid: Option<Point>) -> Point {
-        match self.centre_of_mass {
-            CentreOfMass::SampleMean => sample_mean,
-            CentreOfMass::Volume => volume_centroid.unwrap_or(sample_mean),
-            CentreOfMass::Given(point) => Point::from(point),
-        }
     }
 }
 

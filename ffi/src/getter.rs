@@ -37,6 +37,7 @@ pub(crate) unsafe fn get<M: Model, T: Public>(
 }
 
 /// The item with this index.
-pub(crate) fn at<T>(items: &[T], index: u32) -> Result<&T, Failure> {
-    items.get(index as usize).ok_or(Failure::Index { argument: "index", index, count: items.len() })
+pub(crate) fn at<T>(mut items: impl ExactSizeIterator<Item = T>, index: u32) -> Result<T, Failure> {
+    let count = items.len();
+    items.nth(index as usize).ok_or(Failure::Index { argument: "index", index, count })
 }

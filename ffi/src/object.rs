@@ -10,8 +10,7 @@ use crate::status::*;
 use core::ffi::c_void;
 use hangpose_core::Monitor;
 use hangpose_core::geometry::{MAX_FOLD, Symmetry};
-use hangpose_core::hanging::sites::ObjectCounts;
-use hangpose_core::hanging::{Object, ObjectPlaces};
+use hangpose_core::hanging::{Object, ObjectCounts, sites};
 use hangpose_core::memory::Limits;
 
 /// An analysed object, at the front of the memory in which it was created. There is nothing to free. As long as it
@@ -143,9 +142,9 @@ pub unsafe extern "C" fn hangpose_object_get_info(
 ) -> hangpose_status {
     let read = |object: &Object| {
         let (mass, work) = (object.mass(), object.work());
-        let (contact_points, counts) = match *object.places() {
-            ObjectPlaces::Sites { counts, .. } => (counts.contact_points, counts),
-            ObjectPlaces::Contacts { counts, .. } => (counts.contact_points, ObjectCounts::default()),
+        let (contact_points, counts) = match object.counts() {
+            ObjectCounts::Sites(counts) => (counts.contact_points, counts),
+            ObjectCounts::Contacts(counts) => (counts.contact_points, sites::ObjectCounts::default()),
         };
         Ok(hangpose_object_info {
             struct_size: size_of::<hangpose_object_info>() as u32,
@@ -160,7 +159,7 @@ pub unsafe extern "C" fn hangpose_object_get_info(
             with_free_space: counts.with_free_space as u32,
             encircled: counts.encircled as u32,
             sites: counts.sites as u32,
-            contacts: object.places().contacts().len() as u32,
+            contacts: object.contacts().len() as u32,
             symmetries: object.symmetries().len() as u32,
             rays: work.rays,
             distance_queries: work.distance_queries,
@@ -210,7 +209,7 @@ pub unsafe extern "C" fn hangpose_object_get_site(
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
     let read = |object: &Object| {
-        let found = at(object.places().sites(), index)?;
+        let found = at(object.sites(), index)?;
         Ok(hangpose_object_site {
             struct_size: size_of::<hangpose_object_site>() as u32,
             contact_points: found.contact_points,
@@ -265,7 +264,7 @@ pub unsafe extern "C" fn hangpose_object_get_contact(
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
     let read = |object: &Object| {
-        let found = at(object.places().contacts(), index)?;
+        let found = at(object.contacts(), index)?;
         Ok(hangpose_object_contact {
             struct_size: size_of::<hangpose_object_contact>() as u32,
             position: found.position.into(),
@@ -314,7 +313,7 @@ pub unsafe extern "C" fn hangpose_object_get_symmetry(
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
     let read = |object: &Object| {
-        let &Symmetry { axis, fold } = at(object.symmetries(), index)?;
+        let &Symmetry { axis, fold } = at(object.symmetries().iter(), index)?;
         Ok(hangpose_symmetry { struct_size: size_of::<hangpose_symmetry>() as u32, fold, axis: axis.into() })
     };
     // SAFETY: the caller vouches for the pointers.

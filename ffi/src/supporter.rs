@@ -9,8 +9,7 @@ use crate::params::hangpose_params;
 use crate::status::*;
 use core::ffi::c_void;
 use hangpose_core::Monitor;
-use hangpose_core::hanging::sites::SupporterCounts;
-use hangpose_core::hanging::{Supporter, SupporterPlaces};
+use hangpose_core::hanging::{Supporter, SupporterCounts, sites};
 use hangpose_core::memory::Limits;
 
 /// An analysed supporter, at the front of the memory in which it was created. There is nothing to free. As long as
@@ -204,9 +203,9 @@ pub unsafe extern "C" fn hangpose_supporter_get_info(
 ) -> hangpose_status {
     let read = |supporter: &Supporter| {
         let (cleaning, normals, work) = (supporter.cleaning(), supporter.normals(), supporter.work());
-        let (contact_points, counts) = match *supporter.places() {
-            SupporterPlaces::Sites { counts, .. } => (counts.contact_points, counts),
-            SupporterPlaces::Contacts { counts, .. } => (counts.contact_points, SupporterCounts::default()),
+        let (contact_points, counts) = match supporter.counts() {
+            SupporterCounts::Sites(counts) => (counts.contact_points, counts),
+            SupporterCounts::Contacts(counts) => (counts.contact_points, sites::SupporterCounts::default()),
         };
         Ok(hangpose_supporter_info {
             struct_size: size_of::<hangpose_supporter_info>() as u32,
@@ -222,7 +221,7 @@ pub unsafe extern "C" fn hangpose_supporter_get_info(
             contact_points: contact_points as u32,
             clusters: counts.clusters as u32,
             sites: counts.sites as u32,
-            contacts: supporter.places().contacts().len() as u32,
+            contacts: supporter.contacts().len() as u32,
             rays: work.rays,
             distance_queries: work.distance_queries,
         })
@@ -266,7 +265,7 @@ pub unsafe extern "C" fn hangpose_supporter_get_site(
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
     let read = |supporter: &Supporter| {
-        let found = at(supporter.places().sites(), index)?;
+        let found = at(supporter.sites(), index)?;
         Ok(hangpose_supporter_site {
             struct_size: size_of::<hangpose_supporter_site>() as u32,
             position: found.position.into(),
@@ -310,7 +309,7 @@ pub unsafe extern "C" fn hangpose_supporter_get_contact(
     detail: *mut hangpose_detail,
 ) -> hangpose_status {
     let read = |supporter: &Supporter| {
-        let found = at(supporter.places().contacts(), index)?;
+        let found = at(supporter.contacts(), index)?;
         Ok(hangpose_supporter_contact {
             struct_size: size_of::<hangpose_supporter_contact>() as u32,
             position: found.position.into(),

@@ -314,8 +314,8 @@ fn answer(case: &Case, offset: usize) -> String {
         Err(error) => return told(error),
     };
     check_object(&object, &mesh);
-    write!(said, "{:?} {:?} {:?} {:?}", object.mass(), object.places(), object.symmetries(), object.work())
-        .unwrap();
+    let places: (Vec<_>, Vec<_>) = (object.sites().collect(), object.contacts().collect());
+    write!(said, "{:?} {places:?} {:?} {:?}", object.mass(), object.symmetries(), object.work()).unwrap();
 
     let limits = Limits::of_points(cloud.points().len());
     let mut more_memory = Block::new(Supporter::bytes(&limits), offset);
@@ -324,7 +324,8 @@ fn answer(case: &Case, offset: usize) -> String {
         Err(error) => return said + &told(error),
     };
     check_supporter(&supporter, cloud.points().len());
-    write!(said, "{:?} {:?} {:?}", supporter.places(), supporter.cleaning(), supporter.normals()).unwrap();
+    let places: (Vec<_>, Vec<_>) = (supporter.sites().collect(), supporter.contacts().collect());
+    write!(said, "{places:?} {:?} {:?}", supporter.cleaning(), supporter.normals()).unwrap();
 
     let hung: Vec<_> = asked.hung.iter().map(|pose| Hung { object: &object, pose: *pose }).collect();
     let request = Request {
@@ -448,7 +449,7 @@ fn check_object(object: &Object, mesh: &Mesh) {
     if let Some(volume) = mass.volume {
         within("the volume", volume, 0.0, f32::MAX);
     }
-    for contact in object.places().contacts() {
+    for contact in object.contacts() {
         assert!(
             (contact.normal.norm() - 1.0).abs() < 1e-3 && (contact.bar_direction.norm() - 1.0).abs() < 1e-3,
             "{contact:?}"
@@ -461,7 +462,7 @@ fn check_object(object: &Object, mesh: &Mesh) {
     if let Some(field) = object.distance_field() {
         let bounds = mesh.aabb();
         for point in [bounds.min, bounds.centre(), bounds.max] {
-            let (distance, gradient) = field.sample(&point);
+            let (distance, gradient) = field.sample(&(object.frame() * point));
             assert!(distance.is_finite() && gradient.iter().all(|x| x.is_finite()), "{distance} {gradient}");
         }
     }
@@ -471,7 +472,7 @@ fn check_supporter(supporter: &Supporter, given: usize) {
     let kept = supporter.points().points();
     assert!(kept.iter().flat_map(|point| point.iter()).all(|x| x.is_finite()));
     assert!(supporter.guessed() <= kept.len() && kept.len() <= 2 * given + 1, "{} of {given}", kept.len());
-    for contact in supporter.places().contacts() {
+    for contact in supporter.contacts() {
         assert!(
             (contact.normal.norm() - 1.0).abs() < 1e-3 && (contact.bar_direction.norm() - 1.0).abs() < 1e-3,
             "{contact:?}"

@@ -56,7 +56,7 @@ fn analyse(cloud: &CloudFile, truth: &CloudFile) -> (NormalCounts, [usize; 3]) {
     let is_right = |contact: &&SupportContact| {
         contact.normal.iter().zip(true_normal(&contact.position)).map(|(a, b)| a * b).sum::<f32>() > 0.5
     };
-    let contacts = supporter.places().contacts();
+    let contacts: Vec<_> = supporter.contacts().collect();
     let kept = supporter.points().points().len();
     (supporter.normals(), [kept, contacts.iter().filter(is_right).count(), contacts.len()])
 }

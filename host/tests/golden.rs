@@ -48,7 +48,7 @@ fn numbers(pose: &HangingPose) -> Vec<f32> {
 
 #[test]
 fn the_paper_gives_the_same_bytes_everywhere() {
-    let pairs = [("mug.obj", "mug_tree.ply", "3282c4b3"), ("scissors.obj", "hook.ply", "65edbfc8")];
+    let pairs = [("mug.obj", "mug_tree.ply", "57b3ab46"), ("scissors.obj", "hook.ply", "30fe0f3f")];
     for (object, supporter, expected) in pairs {
         assert_eq!(hash(object, supporter, &Params::paper()), expected, "{object} on {supporter}");
     }
@@ -56,7 +56,7 @@ fn the_paper_gives_the_same_bytes_everywhere() {
 
 #[test]
 fn the_default_gives_the_same_bytes_everywhere() {
-    let pairs = [("mug.obj", "hook.ply", "0c1c640d"), ("scissors.obj", "mug_tree.ply", "85d7dc75")];
+    let pairs = [("mug.obj", "hook.ply", "7630aa76"), ("scissors.obj", "mug_tree.ply", "67681e5c")];
     // All hashes are compared at once, so that one run prints all new ones.
     let found =
         pairs.map(|(object, supporter, _)| (object, supporter, hash(object, supporter, &Params::default())));

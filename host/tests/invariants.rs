@@ -130,7 +130,7 @@ fn measure(shape: &Shape, queries: &[Point3<f64>]) -> Measured {
     let params = Params { samples: 100, ..Params::paper() };
     let mut memory = Vec::new();
     let object = analyze_object(&mesh, &params, &mut memory, &Monitor::new()).unwrap();
-    let queries: Vec<Point> = queries.iter().map(|query| query.cast()).collect();
+    let queries: Vec<Point> = queries.iter().map(|query| object.frame() * query.cast::<f32>()).collect();
     let surface = object.surface();
     let distance = |query: &Point| (surface.closest_point(query) - query).norm();
     Measured {

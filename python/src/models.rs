@@ -123,9 +123,8 @@ impl NativeObject {
     /// Positions of the contact candidates, or of the hanging sites.
     #[getter]
     fn places<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        let places = self.object().places();
-        let contacts = places.contacts().iter().map(|contact| contact.position.into());
-        let sites = places.sites().iter().map(|site| site.position.into());
+        let contacts = self.object().contacts().map(|contact| contact.position.into());
+        let sites = self.object().sites().map(|site| site.position.into());
         array::<f32>(py, contacts.chain(sites).collect()).into_any()
     }
 
@@ -177,9 +176,8 @@ impl NativeSupporter {
     /// Positions of the contact candidates, or of the support sites.
     #[getter]
     fn places<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        let places = self.supporter().places();
-        let contacts = places.contacts().iter().map(|contact| contact.position.into());
-        let sites = places.sites().iter().map(|site| site.position.into());
+        let contacts = self.supporter().contacts().map(|contact| contact.position.into());
+        let sites = self.supporter().sites().map(|site| site.position.into());
         array::<f32>(py, contacts.chain(sites).collect()).into_any()
     }
 

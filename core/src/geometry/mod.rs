@@ -6,7 +6,7 @@
 //! - `shapes/`: what a caller hands in, meshes and clouds, and what follows from it alone: bounding box, area, mass properties;
 //! - `queries/`: trees over triangles and points, for rays, closest points, winding numbers and neighbours; the exit from a convex hull;
 //! - `distance_field/`: the signed distance of a surface, tabulated on a sparse grid;
-//! - `statistics/`: clusters and principal directions of points;
+//! - `statistics/`: clusters, principal directions and frames of points;
 //! - `symmetry/`: turns after which an object looks as before.
 
 mod distance_field;
@@ -20,9 +20,12 @@ pub use distance_field::DistanceField;
 pub(crate) use queries::{Nearest, Node, PointTreeSlots};
 pub use queries::{Neighbour, PointTree, Surface, hull};
 pub use shapes::{Aabb, Cloud, CloudError, MAX_COUNT, MassProperties, Mesh, MeshError};
-pub(crate) use shapes::{ball_on, closest_point_on_triangle, halves, longest_side_first, scaled_normal};
+pub(crate) use shapes::{
+    Viewpoints, ball_on, closest_point_on_triangle, halves, longest_side_first, scaled_normal,
+};
 pub(crate) use statistics::{
-    eigenvectors, least_eigenvector, linked_cluster, mean_shift, principal_direction,
+    eigenvectors, least_eigenvector, linked_cluster, mean_shift, principal_direction, principal_frame,
+    upright_frame,
 };
 pub use symmetry::{MAX_FOLD, Symmetry};
 pub(crate) use symmetry::{Symmetries, least_angle};

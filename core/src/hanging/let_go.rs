@@ -2,7 +2,7 @@
 
 use super::{Object, PredictError, Supporter, predict_bytes};
 use crate::geometry::{Pose, is_rigid};
-use crate::mechanics::{Fate, Sleep, Support, swing_out};
+use crate::mechanics::{Fate, Frames, Sleep, Support, swing_out};
 use crate::memory::Arena;
 use crate::monitor::{Meter, Monitor, Stop};
 use crate::params::Params;
@@ -34,9 +34,11 @@ pub fn let_go(
     }
     let body = object.body().ok_or(PredictError::NoDistanceField)?;
     let support = supporter.support();
+    let frames = Frames::of((&body, support));
     let mut arena = Arena::new(memory, predict_bytes(&supporter.limits()))?;
     let sleeps = arena.slice::<Sleep>(Support::sleepers(support.patches.len()))?;
     let mut meter = Meter::new(monitor);
-    let settled = swing_out((&body, support), release, &-params.up(), params, sleeps, &mut meter);
-    Ok(settled.map(|settled| LetGo { fate: settled.fate, pose: settled.pose }))
+    let settled =
+        swing_out((&body, support), &frames.inwards(release), &-params.up(), params, sleeps, &mut meter);
+    Ok(settled.map(|settled| LetGo { fate: settled.fate, pose: frames.outwards(&settled.pose) }))
 }

@@ -131,7 +131,7 @@ impl<'o> Search<'_, 'o> {
     }
 
     fn places_taken(&self, object: &Object, pose: &Pose) -> usize {
-        let to_object = pose.inverse();
+        let to_object = object.frames_with(self.supporter).inwards(pose).inverse();
         let places = self.supporter.places().contacts().iter();
         places.filter(|place| object.surface().is_within(&(to_object * place.position), TAKEN)).count()
     }

@@ -23,9 +23,9 @@ pub(super) enum ObjectSlots<'m> {
     Contacts(&'m mut [ObjectContact]),
 }
 
-/// What a method found on an object.
+/// What a method found on an object, in its frame.
 #[derive(Clone, Copy, Debug)]
-pub enum ObjectPlaces<'m> {
+pub(super) enum ObjectPlaces<'m> {
     /// By the published method.
     Sites {
         /// The hanging sites, the best encircled first.
@@ -98,14 +98,21 @@ impl<'m> ObjectSlots<'m> {
 }
 
 impl<'m> ObjectPlaces<'m> {
-    /// The hanging sites, the best encircled first; none by another method.
-    pub fn sites(&self) -> &'m [HangingSite] {
+    /// None by another method.
+    pub(super) fn sites(&self) -> &'m [HangingSite] {
         if let Self::Sites { sites, .. } = *self { sites } else { &[] }
     }
 
-    /// The contact candidates, the deepest capture first; none by another method.
-    pub fn contacts(&self) -> &'m [ObjectContact] {
+    /// None by another method.
+    pub(super) fn contacts(&self) -> &'m [ObjectContact] {
         if let Self::Contacts { contacts, .. } = *self { contacts } else { &[] }
+    }
+
+    pub(super) fn counts(&self) -> ObjectCounts {
+        match *self {
+            Self::Sites { counts, .. } => ObjectCounts::Sites(counts),
+            Self::Contacts { counts, .. } => ObjectCounts::Contacts(counts),
+        }
     }
 }
 
@@ -115,9 +122,9 @@ pub(super) enum SupporterSlots<'m> {
     Contacts(&'m mut [SupportContact]),
 }
 
-/// What a method found on a supporter.
+/// What a method found on a supporter, in its frame.
 #[derive(Clone, Copy, Debug)]
-pub enum SupporterPlaces<'m> {
+pub(super) enum SupporterPlaces<'m> {
     /// By the published method.
     Sites {
         /// The support sites, the thinnest first.
@@ -178,15 +185,40 @@ impl<'m> SupporterSlots<'m> {
 }
 
 impl<'m> SupporterPlaces<'m> {
-    /// The support sites, the thinnest first; none by another method.
-    pub fn sites(&self) -> &'m [SupportSite] {
+    /// None by another method.
+    pub(super) fn sites(&self) -> &'m [SupportSite] {
         if let Self::Sites { sites, .. } = *self { sites } else { &[] }
     }
 
-    /// The contact candidates; none by another method.
-    pub fn contacts(&self) -> &'m [SupportContact] {
+    /// None by another method.
+    pub(super) fn contacts(&self) -> &'m [SupportContact] {
         if let Self::Contacts { contacts, .. } = *self { contacts } else { &[] }
     }
+
+    pub(super) fn counts(&self) -> SupporterCounts {
+        match *self {
+            Self::Sites { counts, .. } => SupporterCounts::Sites(counts),
+            Self::Contacts { counts, .. } => SupporterCounts::Contacts(counts),
+        }
+    }
+}
+
+/// How much was left after each step of the search for places on an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ObjectCounts {
+    /// Of the published method.
+    Sites(sites::ObjectCounts),
+    /// Of the contact method.
+    Contacts(contacts::ObjectCounts),
+}
+
+/// How much was left after each step of the search for places on a supporter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SupporterCounts {
+    /// Of the published method.
+    Sites(sites::SupporterCounts),
+    /// Of the contact method.
+    Contacts(contacts::SupporterCounts),
 }
 
 /// How much was left after each step of a method.

@@ -36,7 +36,7 @@ pub use counts::Counts;
 pub use error::{AnalysisError, PredictError};
 pub use let_go::{LetGo, let_go};
 pub use many::{MAX_HUNG, Many, predict_many};
-pub use method::{ObjectPlaces, SearchCounts, SupporterPlaces};
+pub use method::{ObjectCounts, SearchCounts, SupporterCounts};
 pub use object::Object;
 pub use pose::HangingPose;
 pub use predict::{Prediction, predict, predict_bytes};

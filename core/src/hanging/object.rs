@@ -1,18 +1,30 @@
 //! The thing that is hung.
 
-use super::AnalysisError;
-use super::method::{self, ObjectPlaces, ObjectSlots};
+use super::contacts::ObjectContact;
+use super::method::{self, ObjectCounts, ObjectPlaces, ObjectSlots};
 use super::samples::ObjectSamples;
-use crate::geometry::{DistanceField, MassProperties, Mesh, Point, Surface, Symmetries, Symmetry, Vector};
-use crate::mechanics::{Body, Views};
+use super::sites::HangingSite;
+use super::{AnalysisError, Supporter};
+use crate::geometry::{
+    DistanceField, MassProperties, Mesh, Point, Pose, Surface, Symmetries, Symmetry, Vector, Viewpoints,
+    principal_frame,
+};
+use crate::mechanics::{Body, Frames, Views};
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
-use crate::params::Params;
+use crate::params::{CentreOfMass, Params};
+use nalgebra::Matrix3;
 
-/// An object, analysed: shape, centre of mass and the places by which it may hang, in object coordinates. Immutable;
-/// any number of threads may use it at once.
+/// An object, analysed: shape, centre of mass and the places by which it may hang. Immutable; any number of threads may use it at
+/// once.
+///
+/// It is analysed in a frame of its own, that of the principal axes of its surface, so that nothing depends on the coordinates in which the
+/// mesh is given. [`surface`](Self::surface) and [`distance_field`](Self::distance_field) are in this [`frame`](Self::frame); all else
+/// that is told is in object coordinates, those of the mesh.
 #[derive(Clone, Copy)]
 pub struct Object<'m> {
+    /// From object coordinates to those of all that follows but the mass properties and the symmetries.
+    frame: Pose,
     surface: Surface<'m>,
     field: Option<DistanceField<'m>>,
     places: ObjectPlaces<'m>,
@@ -68,12 +80,15 @@ impl<'m> Object<'m> {
         let mut meter = Meter::new(monitor);
 
         let mass = MassProperties::of(mesh, arena.scratch(), &meter)?;
+        let frame = principal_frame(|| mesh.quadrature(), &meter)?;
+        let mesh = &mesh.in_frame(&frame);
         let surface = Surface::build(mesh, mass.is_inside_out, &mut arena, &meter)?;
         let field = match params.voxels {
             0 => None,
             voxels => Some(DistanceField::build(&surface, voxels, &mut arena, &mut meter)?),
         };
-        let views = Views::new(mesh.viewpoints(), &surface.aabb().centre(), &mut arena)?;
+        let viewpoints = Viewpoints::new(mesh.viewpoints(), &frame);
+        let views = Views::new(viewpoints, &surface.aabb().centre(), &mut arena)?;
         let slots = ObjectSlots::new(params, &mut arena)?;
         meter.check()?;
 
@@ -86,10 +101,18 @@ impl<'m> Object<'m> {
         }
         meter.check()?;
 
-        let sample_mean = mean_of(points);
-        let centre_of_mass = params.resolve_centre_of_mass(sample_mean, mass.volume_centroid);
+        let centre_of_mass = match params.centre_of_mass {
+            CentreOfMass::SampleMean => None,
+            CentreOfMass::Volume => mass.volume_centroid,
+            CentreOfMass::Given(point) => Some(Point::from(point)),
+        };
+        let centre_of_mass = centre_of_mass.map_or_else(|| mean_of(points), |point| frame * point);
         let symmetries = match &field {
-            Some(field) => Symmetries::find(&mass.inertia, &centre_of_mass, field, points, &meter)?,
+            Some(field) => {
+                let inertia = rotated(&mass.inertia, &frame);
+                let found = Symmetries::find(&inertia, &centre_of_mass, field, points, &meter)?;
+                found.rotated(&frame.rotation.inverse())
+            }
             None => Symmetries::default(),
         };
         let samples = ObjectSamples { surface: &surface, points, normals, centre_of_mass, params };
@@ -103,19 +126,32 @@ impl<'m> Object<'m> {
             reach = corners.iter().map(|corner| (corner - centre_of_mass).norm()).fold(reach, f32::max);
         }
         let work = meter.work;
-        Ok(Self { surface, field, places, reach, mass, centre_of_mass, symmetries, views, work, stopped })
+        Ok(Self {
+            frame,
+            surface,
+            field,
+            places,
+            reach,
+            mass,
+            centre_of_mass,
+            symmetries,
+            views,
+            work,
+            stopped,
+        })
     }
 
     /// The object as mechanics sees it, if it was analysed with voxels.
     pub(crate) fn body(&self) -> Option<Body<'_>> {
-        let inverse_inertia = self.mass.inertia.try_inverse().unwrap_or_else(|| {
+        let inverse_inertia = rotated(&self.mass.inertia, &self.frame).try_inverse().unwrap_or_else(|| {
             // All of it on a line or in a point: as a ball of its size.
-            nalgebra::Matrix3::identity() * (2.5 / (self.reach * self.reach).max(1e-9))
+            Matrix3::identity() * (2.5 / (self.reach * self.reach).max(1e-9))
         });
         Some(Body {
             field: self.field.as_ref()?,
             surface: &self.surface,
             centre: self.centre_of_mass,
+            frame: &self.frame,
             inverse_inertia,
             reach: self.reach,
             extent: self.surface.aabb().extents().max(),
@@ -123,23 +159,39 @@ impl<'m> Object<'m> {
         })
     }
 
-    /// The signed distances of the mesh on a grid, if it was analysed with [`voxels`](Params::voxels).
+    /// The frame of the object: maps object coordinates to those of [`surface`](Self::surface) and
+    /// [`distance_field`](Self::distance_field). Its axes are the principal axes of the surface, x that along which it spreads most.
+    pub fn frame(&self) -> &Pose {
+        &self.frame
+    }
+
+    /// The signed distances of the mesh on a grid, in the object's [`frame`](Self::frame), if it was analysed with [`voxels`](Params::voxels).
     pub fn distance_field(&self) -> Option<&DistanceField<'m>> {
         self.field.as_ref()
     }
 
-    /// The mesh, for rays and distances.
+    /// The mesh, for rays and distances, in the object's [`frame`](Self::frame).
     pub fn surface(&self) -> &Surface<'m> {
         &self.surface
     }
 
-    /// Area, volume and closedness of the mesh.
+    /// Area, volume and closedness of the mesh; in object coordinates.
     pub fn mass(&self) -> &MassProperties {
         &self.mass
     }
 
-    /// The centre of mass that the poses are made for, by [`Params::centre_of_mass`]; metres.
+    /// The centre of mass that the poses are made for, by [`Params::centre_of_mass`]; in object coordinates, metres.
     pub fn centre_of_mass(&self) -> Point {
+        self.frame.inverse_transform_point(&self.centre_of_mass)
+    }
+
+    /// The frames of the object and of a supporter.
+    pub(crate) fn frames_with(&self, supporter: &Supporter) -> Frames {
+        Frames { object: self.frame, supporter: *supporter.frame() }
+    }
+
+    /// The centre of mass in the object's frame.
+    pub(super) fn centre(&self) -> Point {
         self.centre_of_mass
     }
 
@@ -149,8 +201,25 @@ impl<'m> Object<'m> {
         self.symmetries.as_slice()
     }
 
-    /// Where the object may hang, by the method that it was analysed with.
-    pub fn places(&self) -> &ObjectPlaces<'m> {
+    /// The hanging sites, the best encircled first; none by the contact method.
+    pub fn sites(&self) -> impl ExactSizeIterator<Item = HangingSite> + use<'m> {
+        let back = self.frame.inverse();
+        self.places.sites().iter().map(move |site| site.moved(&back))
+    }
+
+    /// The contact candidates, the deepest capture first; none by the published method.
+    pub fn contacts(&self) -> impl ExactSizeIterator<Item = ObjectContact> + use<'m> {
+        let back = self.frame.inverse();
+        self.places.contacts().iter().map(move |contact| contact.moved(&back))
+    }
+
+    /// How much was left after each step of the search for places, by the method that it was analysed with.
+    pub fn counts(&self) -> ObjectCounts {
+        self.places.counts()
+    }
+
+    /// The places, in the object's frame.
+    pub(super) fn places(&self) -> &ObjectPlaces<'m> {
         &self.places
     }
 
@@ -159,10 +228,16 @@ impl<'m> Object<'m> {
         self.work
     }
 
-    /// Why the search for places ended early, if it did; then [`places`](Self::places) may lack some.
+    /// Why the search for places ended early, if it did; then some may be missing.
     pub fn stopped(&self) -> Option<Stop> {
         self.stopped
     }
+}
+
+/// A tensor in the axes of a frame.
+fn rotated(tensor: &Matrix3<f32>, frame: &Pose) -> Matrix3<f32> {
+    let rotation = frame.rotation.to_rotation_matrix();
+    rotation.matrix() * tensor * rotation.matrix().transpose()
 }
 
 /// `h_c` of eq. (3). Summed in double precision, so that ten thousand terms lose nothing.

@@ -3,6 +3,7 @@
 use super::settling::rest::Rest;
 use super::sites::site_match::SiteMatch;
 use crate::geometry::Pose;
+use crate::mechanics::Frames;
 
 /// A pose in which the object hangs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +15,14 @@ pub struct HangingPose {
     pub rest: Option<Rest>,
     /// The pair of sites that it joins; `None` unless it comes from [`Candidates::Sites`](crate::Candidates::Sites).
     pub matched: Option<SiteMatch>,
+}
+
+impl HangingPose {
+    /// The same in the caller's coordinates.
+    pub(super) fn outwards(&self, frames: &Frames) -> Self {
+        let rest = self.rest.map(|rest| rest.outwards(frames));
+        Self { pose: frames.outwards(&self.pose), rest, matched: self.matched }
+    }
 }
 
 impl Default for HangingPose {

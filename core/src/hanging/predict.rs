@@ -59,7 +59,7 @@ pub fn predict<'p>(
     let body = object.body();
     let scene = Scene {
         surface: object.surface(),
-        centre_of_mass: object.centre_of_mass(),
+        centre_of_mass: object.centre(),
         body: body.as_ref(),
         support: supporter.support(),
         symmetries: request.symmetries_of(object),
@@ -69,11 +69,15 @@ pub fn predict<'p>(
     let found = method::search(&scene, (object.places(), supporter.places()), poses, arena, &mut meter)?;
     meter.progress(1.0);
     let Found { poses: count, counts: search, settling, stop } = found;
+    let (poses, frames) = (&mut poses[..count], object.frames_with(supporter));
+    for pose in &mut *poses {
+        *pose = pose.outwards(&frames);
+    }
     let counts = Counts { search, settling };
     let stopped = object.stopped().or(supporter.stopped()).or(stop);
     let stage = if stopped.is_some() { None } else { counts.empty_stage(params.settle) };
     Ok(Prediction {
-        poses: &poses[..count],
+        poses,
         rejection: stage.map(|stage| Rejection { stage, counts }),
         stopped,
         counts,

@@ -116,7 +116,7 @@ fn several_rings_hang_beside_each_other() {
         let rests: Vec<Pose> = poses.iter().flatten().map(|pose| rest(pose).pose).collect();
         for (k, a) in rests.iter().enumerate() {
             for b in &rests[..k] {
-                let between = b.inverse() * a;
+                let between = object.frame() * b.inverse() * a * object.frame().inverse();
                 let corners = object.surface().triangles().iter().flatten();
                 let least = corners.map(|corner| object.surface().signed_distance(&(between * corner)));
                 assert!(least.fold(f32::INFINITY, f32::min) > 0.0, "rings {k} and another overlap");

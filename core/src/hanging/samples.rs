@@ -17,8 +17,6 @@ pub(super) struct ObjectSamples<'a> {
 /// The points of a supporter, on which a method finds places.
 pub(super) struct SupporterCloud<'a> {
     pub(super) tree: &'a PointTree<'a>,
-    /// In the caller's order, metres.
-    pub(super) points: &'a [Point],
     /// Unit vectors out of the solid, in tree order.
     pub(super) normals: &'a [Vector],
     /// 1 for points on which nothing shall hang: those on walls and tables, and those that the caller excludes. In tree

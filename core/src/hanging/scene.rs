@@ -5,7 +5,7 @@ use crate::geometry::{Point, Surface, Symmetry};
 use crate::mechanics::{Body, Support};
 use crate::params::Params;
 
-/// An object and a supporter, and the constants of the search.
+/// An object and a supporter in their frames, and the constants of the search.
 #[derive(Clone, Copy)]
 pub(super) struct Scene<'a> {
     /// Surface of the object.
@@ -16,8 +16,9 @@ pub(super) struct Scene<'a> {
     pub(super) body: Option<&'a Body<'a>>,
     /// The supporter as mechanics sees it, with its points.
     pub(super) support: &'a Support<'a>,
-    /// Turns of the object that make no other pose.
+    /// Turns of the object that make no other pose, about axes in the caller's object coordinates.
     pub(super) symmetries: &'a [Symmetry],
+    /// In the caller's coordinates.
     pub(super) request: &'a Request<'a>,
     pub(super) params: &'a Params,
 }

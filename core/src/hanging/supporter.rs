@@ -1,9 +1,13 @@
 //! The thing that is hung on.
 
 use super::AnalysisError;
-use super::method::{self, SupporterPlaces, SupporterSlots};
+use super::contacts::SupportContact;
+use super::method::{self, SupporterCounts, SupporterPlaces, SupporterSlots};
 use super::samples::SupporterCloud;
-use crate::geometry::{Cloud, Point, PointTree, PointTreeSlots, Vector};
+use super::sites::SupportSite;
+use crate::geometry::{
+    Aabb, Cloud, Point, PointTree, PointTreeSlots, Pose, Vector, Viewpoints, upright_frame,
+};
 use crate::mechanics::{Room, Support};
 use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
@@ -16,8 +20,11 @@ const NO_DIRECTION: f32 = 1e-6;
 /// Normals whose length is within this of one are taken as of unit length.
 const UNIT_LENGTH: f32 = 1e-3;
 
-/// A supporter, analysed: points and the places on which something may hang, in supporter coordinates. Immutable; any
-/// number of threads may use it at once.
+/// A supporter, analysed: points and the places on which something may hang. Immutable; any number of threads may use it at once.
+///
+/// It is analysed in a frame of its own, about the mean of its points and turned to the direction across gravity in which they spread most, so
+/// that nothing depends on the coordinates in which the cloud is given. [`points`](Self::points) are in this [`frame`](Self::frame), and
+/// all else that is told is in supporter coordinates, those of the cloud.
 #[derive(Clone, Copy)]
 pub struct Supporter<'m> {
     support: Support<'m>,
@@ -81,14 +88,16 @@ impl<'m> Supporter<'m> {
         let slots = SupporterSlots::new(params, &mut arena)?;
         let mut scratch = arena.scratch();
         let given = scratch.slice::<Vector>(points.len())?;
-        let renormalised = read_normals(cloud, given, &meter)?;
+        let frame = upright_frame(|| points.iter(), &params.up(), &meter)?;
+        let renormalised = read_normals(cloud, &frame, given, &meter)?;
         let estimated = given.iter().filter(|normal| **normal == Vector::zeros()).count();
         let is_taken_as_it_is = method::takes_cloud_as_it_is(params);
-        let mut seen = cleaning::clean(points, given, is_taken_as_it_is, &mut tree, &mut scratch, &meter)?;
+        let mut seen =
+            cleaning::clean((points, &frame), given, is_taken_as_it_is, &mut tree, &mut scratch, &meter)?;
         for (flag, &point) in seen.is_excluded.iter_mut().zip(tree.tree().order()) {
             *flag |= u8::from(!cloud.may_hang_on(point as usize));
         }
-        let views = cloud.viewpoints();
+        let views = Viewpoints::new(cloud.viewpoints(), &frame);
         if is_taken_as_it_is && (params.uses_mechanics() || !views.is_empty()) {
             spacing::measure(&tree.tree(), seen.spacings, &meter)?;
         }
@@ -122,7 +131,8 @@ impl<'m> Supporter<'m> {
             )?,
             false => Support::bare(tree),
         };
-        let seen = SupporterCloud { tree: &tree, points, normals: in_tree_order, is_excluded, params };
+        let support = support.in_frame(frame);
+        let seen = SupporterCloud { tree: &tree, normals: in_tree_order, is_excluded, params };
         let (places, stopped) = slots.find(&seen, &mut meter, scratch)?;
         if stopped == Some(Stop::Cancelled) {
             return Err(AnalysisError::Cancelled);
@@ -144,9 +154,20 @@ impl<'m> Supporter<'m> {
         &self.support
     }
 
-    /// The points, for neighbour queries.
+    /// The frame of the supporter: maps supporter coordinates to those of [`points`](Self::points).
+    pub fn frame(&self) -> &Pose {
+        &self.support.frame
+    }
+
+    /// The points, for neighbour queries, in the supporter's [`frame`](Self::frame).
     pub fn points(&self) -> &PointTree<'m> {
         &self.support.tree
+    }
+
+    /// The box around the points, in supporter coordinates.
+    pub fn aabb(&self) -> Aabb {
+        let back = self.support.frame.inverse();
+        self.points().points().iter().fold(Aabb::EMPTY, |aabb, point| aabb.grow(&(back * point)))
     }
 
     /// The limits that this supporter requires: the number of points of its cloud, and zero for the rest.
@@ -154,8 +175,25 @@ impl<'m> Supporter<'m> {
         Limits::of_points(self.given)
     }
 
-    /// Where something may hang, by the method that it was analysed with.
-    pub fn places(&self) -> &SupporterPlaces<'m> {
+    /// The support sites, the thinnest first; none by the contact method.
+    pub fn sites(&self) -> impl ExactSizeIterator<Item = SupportSite> + use<'m> {
+        let back = self.support.frame.inverse();
+        self.places.sites().iter().map(move |site| site.moved(&back))
+    }
+
+    /// The contact candidates; none by the published method.
+    pub fn contacts(&self) -> impl ExactSizeIterator<Item = SupportContact> + use<'m> {
+        let back = self.support.frame.inverse();
+        self.places.contacts().iter().map(move |contact| contact.moved(&back))
+    }
+
+    /// How much was left after each step of the search for places, by the method that it was analysed with.
+    pub fn counts(&self) -> SupporterCounts {
+        self.places.counts()
+    }
+
+    /// The places, in the supporter's frame.
+    pub(super) fn places(&self) -> &SupporterPlaces<'m> {
         &self.places
     }
 
@@ -171,7 +209,8 @@ impl<'m> Supporter<'m> {
 
     /// Positions of a representative part of the points that were [guessed](Self::guessed), supporter coordinates, metres.
     pub fn guessed_points(&self) -> impl Iterator<Item = Point> + 'm {
-        self.support.guessed()
+        let back = self.support.frame.inverse();
+        self.support.guessed().map(move |point| back * point)
     }
 
     /// What had to be done to the normals that were given.
@@ -184,15 +223,15 @@ impl<'m> Supporter<'m> {
         self.work
     }
 
-    /// Why the search for places ended early, if it did; then [`places`](Self::places) may lack some.
+    /// Why the search for places ended early, if it did; then some may be missing.
     pub fn stopped(&self) -> Option<Stop> {
         self.stopped
     }
 }
 
-/// Writes the normals of a cloud at unit length, zero where they are not known, and returns how many were not of unit
+/// Writes the normals of a cloud in a frame at unit length, zero where they are not known, and returns how many were not of unit
 /// length.
-fn read_normals(cloud: &Cloud, normals: &mut [Vector], meter: &Meter) -> Result<usize, Stop> {
+fn read_normals(cloud: &Cloud, frame: &Pose, normals: &mut [Vector], meter: &Meter) -> Result<usize, Stop> {
     let mut renormalised = 0;
     let given = cloud.normals().unwrap_or_default();
     for (step, (normal, given)) in normals.iter_mut().zip(given).enumerate() {
@@ -200,7 +239,7 @@ fn read_normals(cloud: &Cloud, normals: &mut [Vector], meter: &Meter) -> Result<
         let given = Vector::from(*given);
         let length = given.norm();
         if length > NO_DIRECTION {
-            *normal = given / length;
+            *normal = frame * (given / length);
             renormalised += usize::from((length - 1.0).abs() > UNIT_LENGTH);
         }
     }

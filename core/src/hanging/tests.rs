@@ -109,6 +109,16 @@ fn degrees_between_lines(a: &Vector, b: &Vector) -> f32 {
     a.cross(b).norm().atan2(a.dot(b).abs()).to_degrees()
 }
 
+/// Distances of the points of the supporter from the object at a pose, metres, negative inside.
+fn distances(object: &Object, supporter: &Supporter, pose: &Pose) -> impl Iterator<Item = f32> {
+    let to_object = object.frame() * pose.inverse() * supporter.frame().inverse();
+    supporter
+        .points()
+        .points()
+        .iter()
+        .map(move |point| object.surface().signed_distance(&(to_object * point)))
+}
+
 /// How far apart two poses put an object, by the farther of two of its points, metres.
 fn gap(a: &Pose, b: &Pose, probes: [Point; 2]) -> f32 {
     probes.iter().map(|p| (a * p - b * p).norm()).fold(0.0, f32::max)
@@ -119,8 +129,8 @@ fn a_torus_gives_its_hole() {
     let scene = Scene::ring_on_peg(0.0);
     for params in [fast(), Params::paper()] {
         scene.analyse(&params, &Monitor::new(), |object, _| {
-            assert!(!object.places().sites().is_empty());
-            for site in object.places().sites() {
+            assert!(object.sites().len() > 0);
+            for site in object.sites() {
                 // The hole's radius is 26 mm. The best of ten steps across it is an eighteenth of its diameter
                 // off the centre, which makes its free space that much smaller; samples are 1 mm apart.
                 let step = 0.052 / 18.0;
@@ -138,8 +148,8 @@ fn a_straight_peg_gives_its_axis() {
     for yaw in [0.0_f32, 0.3, 1.0, 2.2] {
         let scene = Scene::ring_on_peg(yaw);
         scene.analyse(&fast(), &Monitor::new(), |_, supporter| {
-            assert!(supporter.places().sites().len() > 3);
-            for site in supporter.places().sites() {
+            assert!(supporter.sites().len() > 3);
+            for site in supporter.sites() {
                 // Slices are tried every 9 degrees, and next to the right one may look as thin by chance.
                 let axis = Vector::new(yaw.cos(), yaw.sin(), 0.0);
                 assert!(degrees_between_lines(&site.hanging_direction, &axis) < 9.0, "{yaw}: {site:?}");
@@ -210,51 +220,37 @@ fn each_stage_rejects_what_it_should() {
 }
 
 #[test]
-fn the_object_may_lie_in_any_frame() {
-    let scene = Scene::key_on_peg();
+fn the_answer_does_not_depend_on_the_frames_of_object_and_supporter() {
+    let mut scene = Scene::key_on_peg();
+    // A stem below one end of the peg, so that its ends differ.
+    let end = Point::new(0.35, -0.2, 0.5);
+    let (points, normals) = test_shapes::peg(end - Vector::z() * 0.04, end, 0.006, 0.001);
+    scene.points.extend(points);
+    scene.normals.extend(normals);
+    let probes = [Point::origin(), Point::new(0.004, 0.11, 0.001)];
     // A ring has many equally good sites, of which merging would keep any one.
     let params = Params { similar_radius: 0.0, ..fast() };
     let (poses, _) = scene.predict(&params);
-    let probes = [Point::origin(), Point::new(0.004, 0.11, 0.001)];
-    for (index, angles) in [(0.5, 0.0, 0.0), (1.0, -2.0, 0.3), (-0.4, 0.9, 3.0)].into_iter().enumerate() {
+    for (angles, yaw) in [((0.5, 0.0, 0.0), 0.8), ((1.0, -2.0, 0.3), 3.0), ((-0.4, 0.9, 3.0), -1.1)] {
         let turn = UnitQuaternion::from_euler_angles(angles.0, angles.1, angles.2);
-        let motion = Pose::from_parts(Translation3::new(0.2, index as f32, -0.1), turn);
-        let moved = Scene { object: scene.object.map(|p| motion * p), ..Scene::key_on_peg() };
+        let motion = Pose::from_parts(Translation3::new(0.2, yaw, -0.1), turn);
+        let upright = UnitQuaternion::from_axis_angle(&Vector::z_axis(), yaw);
+        let other = Pose::from_parts(Translation3::new(yaw, 0.3, -0.2), upright);
+        let moved = Scene {
+            object: scene.object.map(|p| motion * p),
+            points: scene.points.iter().map(|p| (other * Point::from(*p)).into()).collect(),
+            normals: scene.normals.iter().map(|n| (other * Vector::from(*n)).into()).collect(),
+        };
         let (moved, _) = moved.predict(&params);
-        // Rounding moves the samples a little, and with them the sites and the order of poses of like cost. The
-        // ten best of either must be among the other's, within two of the steps of 3.6 degrees between
-        // directions, which are 14 mm at the far probe.
-        let back: Vec<Pose> = moved.iter().map(|m| m.pose * motion).collect();
+        let back: Vec<Pose> = moved.iter().map(|m| other.inverse() * m.pose * motion).collect();
         let straight: Vec<Pose> = poses.iter().map(|p| p.pose).collect();
         for (some, others) in [(&straight, &back), (&back, &straight)] {
             for pose in &some[..10] {
                 let closest =
                     others.iter().map(|other| gap(pose, other, probes)).fold(f32::INFINITY, f32::min);
-                assert!(closest < 0.015, "{index}: {closest}");
+                assert!(closest < 0.006, "{closest} m apart, turned by {angles:?} and {yaw}");
             }
         }
-    }
-}
-
-#[test]
-fn a_turn_of_the_supporter_turns_the_answer() {
-    let scene = Scene::key_on_peg();
-    let (poses, _) = scene.predict(&fast());
-    let probes = [Point::origin(), Point::new(0.004, 0.11, 0.001)];
-    // By a multiple of the 9 degrees between slices the answer turns with it, but for what rounding makes of
-    // slices that are equally thin; in between it is off by up to half of that.
-    for (steps, tolerance) in [(5.0, 0.005), (11.0, 0.005), (-4.0, 0.005), (7.5, 0.012)] {
-        let turn = UnitQuaternion::from_axis_angle(&Vector::z_axis(), steps * 9_f32.to_radians());
-        let rotate = |v: &[f32; 3]| -> [f32; 3] { (turn * Vector::from(*v)).into() };
-        let turned = Scene {
-            points: scene.points.iter().map(rotate).collect(),
-            normals: scene.normals.iter().map(rotate).collect(),
-            object: scene.object.clone(),
-        };
-        let (turned, _) = turned.predict(&fast());
-        let closest = turned.iter().map(|t| gap(&(turn * poses[0].pose), &t.pose, probes));
-        let closest = closest.fold(f32::INFINITY, f32::min);
-        assert!(closest < tolerance, "{steps}: {closest}");
     }
 }
 
@@ -313,7 +309,7 @@ fn memory_of_every_size_gives_the_error_or_the_model() {
     for offset in 0..17 {
         memory.fill(offset as u8);
         let object = Object::analyze(&mesh, &params, &mut memory[offset..offset + needed[0]], &monitor);
-        sites.push(object.unwrap().places().sites().to_vec());
+        sites.push(object.unwrap().sites().collect::<std::vec::Vec<_>>());
         memory.fill(!offset as u8);
         Supporter::analyze(&cloud, &params, &mut memory[offset..offset + needed[1]], &monitor).unwrap();
     }
@@ -371,9 +367,7 @@ fn fewer_places_for_poses_give_the_first_of_more() {
         }
         // Collisions by brute force.
         for pose in all.iter().step_by(7) {
-            let inverse = pose.pose.inverse();
-            let inside = supporter.points().points().iter();
-            let inside = inside.filter(|p| object.surface().signed_distance(&(inverse * *p)) < 0.0).count();
+            let inside = distances(object, supporter, &pose.pose).filter(|distance| *distance < 0.0).count();
             assert_eq!(inside as u32, cost(pose).collision);
         }
     });
@@ -441,9 +435,7 @@ fn assert_hangs(poses: &[HangingPose], scene: &Scene, params: &Params) {
                 "{rest:?}"
             );
             *last = rest.probability;
-            let inverse = pose.pose.inverse();
-            let distance = |p: &Point| object.surface().signed_distance(&(inverse * p));
-            let least = supporter.points().points().iter().map(distance).fold(f32::INFINITY, f32::min);
+            let least = distances(object, supporter, &pose.pose).fold(f32::INFINITY, f32::min);
             assert!(least > 0.0 && least < 0.003, "released off the supporter, but not far: {least}");
             assert!(rest.clearance > 0.0 && rest.clearance <= params.clearance);
             let [from, to] = [pose.pose, rest.pose].map(|pose| pose * object.centre_of_mass());
@@ -772,7 +764,7 @@ fn whoever_watches_sees_each_release_and_how_it_ended() {
         let seen = seen.into_inner().unwrap();
         assert_eq!(seen.len(), counts.released);
         assert_eq!(seen.iter().filter(|(_, fate)| *fate == Fate::Rests).count(), counts.at_rest);
-        // Each release ends as it did, and the best one where it was said to.
+        // Each release ends as it did, and the best one where it was said to, but for the rounding of the poses that are told.
         let mut replay = |pose: &Pose| {
             let mut track = std::vec::Vec::new();
             let mut watch = |seconds: f32, pose: &Pose| track.push((seconds, *pose));
@@ -787,7 +779,9 @@ fn whoever_watches_sees_each_release_and_how_it_ended() {
             assert_eq!(replay(pose).fate, *fate);
         }
         let end = replay(&best.pose);
-        assert_eq!((end.fate, end.pose), (Fate::Rests, best.rest.unwrap().pose));
+        assert_eq!(end.fate, Fate::Rests);
+        let probes = [Point::origin(), object.centre_of_mass()];
+        assert!(gap(&end.pose, &best.rest.unwrap().pose, probes) < 1e-5);
     });
 }
 

@@ -2,7 +2,7 @@
 
 use super::{LetGo, Object, PredictError, Supporter, predict_bytes};
 use crate::geometry::Pose;
-use crate::mechanics::{Fate, Settings, Sleep, Support, settle_watched};
+use crate::mechanics::{Fate, Frames, Settings, Sleep, Support, settle_watched};
 use crate::memory::Arena;
 use crate::monitor::{Meter, Monitor, Stop};
 use crate::params::Params;
@@ -36,15 +36,17 @@ pub fn watch_release(
     params.validate()?;
     let body = object.body().ok_or(PredictError::NoDistanceField)?;
     let support = supporter.support();
+    let frames = Frames::of((&body, support));
     let mut arena = Arena::new(memory, predict_bytes(&supporter.limits()))?;
     let sleeps = arena.slice::<Sleep>(Support::sleepers(support.patches.len()))?;
     let (settings, down) = (Settings::damped(params), -params.up());
-    let mut step = 0;
+    let (release, mut step) = (frames.inwards(release), 0);
     let watch_state = |state: &_| {
         step += 1;
-        watch(step as f32 * params.time_step, &body.pose(state));
+        watch(step as f32 * params.time_step, &frames.outwards(&body.pose(state)));
     };
     let mut meter = Meter::new(monitor);
-    let settled = settle_watched((&body, support), release, &down, settings, sleeps, &mut meter, watch_state);
-    Ok(settled.map(|settled| LetGo { fate: settled.fate, pose: settled.pose }))
+    let settled =
+        settle_watched((&body, support), &release, &down, settings, sleeps, &mut meter, watch_state);
+    Ok(settled.map(|settled| LetGo { fate: settled.fate, pose: frames.outwards(&settled.pose) }))
 }

@@ -4,7 +4,8 @@ use super::Views;
 use crate::geometry::{DistanceField, Point, Pose, Surface, Vector, rotation_by};
 use nalgebra::{Matrix3, Translation3, UnitQuaternion};
 
-/// A rigid body in object coordinates. Its mass is one, because no result depends on the mass.
+/// A rigid body in the frame of the object, here as in all of the mechanics called object coordinates. Its mass is one, because no result
+/// depends on the mass.
 #[derive(Clone, Copy)]
 pub(crate) struct Body<'a> {
     /// The signed distance field, for fast queries.
@@ -21,6 +22,8 @@ pub(crate) struct Body<'a> {
     pub(crate) extent: f32,
     /// Where it was seen from.
     pub(crate) views: Views<'a>,
+    /// From the caller's object coordinates to these.
+    pub(crate) frame: &'a Pose,
 }
 
 /// Position and velocity of the body, in supporter coordinates.

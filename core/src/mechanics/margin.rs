@@ -134,7 +134,7 @@ pub(crate) fn margin(
     let (mut weakest, mut is_too_small) = (0, false);
     let tilt = |direction: usize, sleeps: &mut [Sleep], meter: &mut Meter| {
         let motion = Motion::new(scene, start, tilting, sleeps);
-        tilt_gravity(motion, body, down, &tilt_direction(direction, down), meter)
+        tilt_gravity(motion, body, down, &tilt_direction(scene.1, direction, down), meter)
     };
     'rows: for row in TILT_ORDER {
         let is_between_held = |tilts: &[f32; DIRECTIONS], k: usize| {
@@ -184,7 +184,7 @@ pub(crate) fn margin(
         margin.jolt_time = Margin::MOST_JOLT_TIME;
     } else if !is_too_small {
         let motion = Motion::new(scene, start, Settings::undamped(params), sleeps);
-        margin.jolt_time = jolt_gravity(motion, body, down, &tilt_direction(weakest, down), meter)?;
+        margin.jolt_time = jolt_gravity(motion, body, down, &tilt_direction(scene.1, weakest, down), meter)?;
     }
     margin.escape_rise = if escape.is_finite() { escape } else { highest };
     margin.escape_ratio = if lever > 0.0 { margin.escape_rise / lever } else { 0.0 };
@@ -194,8 +194,10 @@ pub(crate) fn margin(
 }
 
 /// Unit vector of a horizontal direction, by its index in [`Margin::tilts`].
-fn tilt_direction(direction: usize, down: &Vector) -> Vector {
+fn tilt_direction(support: &Support, direction: usize, down: &Vector) -> Vector {
     let axis = if down.x.abs() < 0.9 { Vector::x() } else { Vector::y() };
+    // The axis is that of the caller.
+    let axis = support.frame * axis;
     let first = (axis - down * axis.dot(down)).normalize();
     rotate_about(-down, core::f32::consts::TAU * direction as f32 / DIRECTIONS as f32, first)
 }

@@ -6,7 +6,9 @@ use super::constants::{
 };
 use super::fit::Surroundings;
 use super::patch::Patch;
-use crate::geometry::{Aabb, Nearest, Neighbour, Point, PointTree, Vector, principal_direction, unit_or};
+use crate::geometry::{
+    Aabb, Nearest, Neighbour, Point, PointTree, Pose, Vector, principal_direction, unit_or,
+};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Unfinished};
 use bytemuck::{Pod, Zeroable};
@@ -27,7 +29,7 @@ const MAX_IN_PLANE: usize = 16;
 /// Largest height of a neighbour above the plane of a patch, as a share of its distance. Normals beside a bar are off by 10 degrees.
 const IN_PLANE: f32 = 0.2;
 
-/// A fixed supporter, in its own coordinates.
+/// A fixed supporter in its frame, here as in all of the mechanics called supporter coordinates.
 #[derive(Clone, Copy)]
 pub(crate) struct Support<'a> {
     /// All points of the cloud.
@@ -40,6 +42,8 @@ pub(crate) struct Support<'a> {
     pub(crate) groups: &'a [Group],
     /// Largest distance from the point of a patch to the patch's corners, metres.
     pub(crate) reach: f32,
+    /// From the caller's supporter coordinates to these.
+    pub(crate) frame: Pose,
 }
 
 /// Consecutive patches, close to each other, with a bounding sphere.
@@ -207,9 +211,14 @@ impl<'a> Support<'a> {
 }
 
 impl<'a> Support<'a> {
+    /// The same, whose coordinates are those to which `frame` leads from the caller's.
+    pub(crate) fn in_frame(self, frame: Pose) -> Self {
+        Self { frame, ..self }
+    }
+
     /// A supporter without patches: no object can touch it.
     pub(crate) fn bare(tree: PointTree<'a>) -> Self {
-        Self { tree, patches: &[], representatives: &[], groups: &[], reach: 0.0 }
+        Self { tree, patches: &[], representatives: &[], groups: &[], reach: 0.0, frame: Pose::identity() }
     }
 
     /// Bytes of working memory for [`fit`](Self::fit).
@@ -277,7 +286,7 @@ impl<'a> Support<'a> {
             *group = Group { first: (k * GROUP_SIZE) as u32, count: patches.len() as u32, centre, radius };
         }
         let reach = patches.iter().map(Patch::reach).fold(0.0, f32::max);
-        Ok(Self { tree, patches, representatives, groups, reach })
+        Ok(Self { tree, patches, representatives, groups, reach, frame: Pose::identity() })
     }
 }
 

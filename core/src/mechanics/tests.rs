@@ -79,6 +79,7 @@ impl Scene {
             surface: &surface,
             centre,
             inverse_inertia: mass.inertia.try_inverse().unwrap(),
+            frame: &Pose::identity(),
             reach,
             extent: surface.aabb().extents().max(),
             views: Views::default(),

@@ -2,7 +2,7 @@
 
 use super::constants::{NEAR_GUESS, OFF_MESH};
 use super::{Body, Support};
-use crate::geometry::{Point, Pose, Vector, fibonacci_direction, unit_or};
+use crate::geometry::{Point, Pose, Vector, Viewpoints, fibonacci_direction, unit_or};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
 
@@ -12,7 +12,7 @@ use crate::monitor::{Meter, Stop};
 pub struct Unseen {
     /// Share of the directions from which no camera looked at the object, 0 to 1: the same for all poses.
     pub object: f32,
-    /// Share of the supporter near the object, in the box around its mesh along the axes of its coordinates, that is in the shadow
+    /// Share of the supporter near the object, in the box around its mesh along its principal axes, that is in the shadow
     /// of the mesh, 0 to 1. No camera saw that the object is not there. What is behind the object, outside the box, does not count.
     pub shadow: f32,
     /// Share of the supporter close to the object that no camera saw and that was guessed, 0 to 1.
@@ -49,11 +49,11 @@ impl<'a> Views<'a> {
     pub(crate) const BYTES: usize = array_bytes::<Point>(MAX_VIEWS);
 
     /// The views of a mesh from the viewpoints that are `given`; `centre` is the middle of the box around the mesh.
-    pub(crate) fn new(given: &[Point], centre: &Point, arena: &mut Arena<'a>) -> Result<Self, OutOfMemory> {
+    pub(crate) fn new(given: Viewpoints, centre: &Point, arena: &mut Arena<'a>) -> Result<Self, OutOfMemory> {
         let viewpoints = arena.slice::<Point>(given.len().min(MAX_VIEWS))?;
-        let count = viewpoints.len();
+        let (all, count) = (given.len(), viewpoints.len());
         for (k, viewpoint) in viewpoints.iter_mut().enumerate() {
-            *viewpoint = given[k * given.len() / count];
+            *viewpoint = given.get(k * all / count).unwrap_or(*viewpoint);
         }
         let (unseen, needed) = unseen_directions(centre, viewpoints);
         Ok(Self { viewpoints, unseen, needed })

@@ -2,13 +2,14 @@
 
 use super::error::PlanError;
 use super::exits::box_around;
+use super::gripper::Hand;
 use super::path::MAX_CLEARANCE;
 use super::placement::Placement;
 use super::space::{Moving, Obstacles, Space, Workspace};
 use super::task::Task;
 use crate::geometry::{Aabb, Pose};
 use crate::hanging::Hung;
-use crate::mechanics::Body;
+use crate::mechanics::{Body, Frames};
 use crate::memory::{Arena, Limits, model_bytes};
 use crate::monitor::{Meter, Monitor};
 
@@ -17,6 +18,7 @@ use crate::monitor::{Meter, Monitor};
 /// It is what [`plan`](super::plan) tests poses with, for planners of one's own.
 pub struct Clearance<'m> {
     space: Space<'m>,
+    frames: Frames,
 }
 
 impl<'m> Clearance<'m> {
@@ -44,13 +46,16 @@ impl<'m> Clearance<'m> {
         task.motion.validate()?;
         let needed = Self::bytes(&task.supporter.limits(), task.request.scene.len());
         let mut arena = Arena::new(memory, needed)?;
-        Ok(Self { space: space_of(task, region, free, &mut arena, &Meter::new(monitor))? })
+        let frames = task.object.frames_with(task.supporter);
+        let region = Aabb::of(&region.corners().map(|corner| frames.supporter * corner));
+        let free = free.iter().map(|pose| frames.inwards(pose));
+        Ok(Self { space: space_of(task, &region, free, &mut arena, &Meter::new(monitor))?, frames })
     }
 
     /// The least distance at a pose, object to supporter coordinates, in metres; capped at [`MAX_CLEARANCE`], negative in a
     /// collision or outside of the workspace, and a lower bound beyond a few millimetres.
     pub fn at(&mut self, pose: &Pose) -> f32 {
-        let place = Placement::of(pose, &self.space.moving.centre);
+        let place = Placement::of(&self.frames.inwards(pose), &self.space.moving.centre);
         let room = self.space.room_at(&place);
         // Nothing stops it.
         let monitor = Monitor::new();
@@ -61,21 +66,29 @@ impl<'m> Clearance<'m> {
     }
 }
 
-/// The object of a task among its obstacles, in what is left of `arena`, with its centre in `region`.
+/// The hand of a task.
+pub(super) fn hand_of<'a>(task: &Task<'a>) -> Option<Hand<'a>> {
+    task.motion.gripper.map(|gripper| Hand::new(&gripper, task.object.frame()))
+}
+
+/// The object of a task among its obstacles, in what is left of `arena`, with its centre in `region`, which like the poses is in the
+/// frames.
 pub(super) fn space_of<'a>(
     task: &Task<'a>,
     region: &Aabb,
-    free: &[Pose],
+    free: impl IntoIterator<Item = Pose>,
     arena: &mut Arena<'a>,
     meter: &Meter,
 ) -> Result<Space<'a>, PlanError> {
     let body = body_of(task)?;
-    let moving = Moving::held(body, task.motion.gripper);
+    let hand = hand_of(task);
+    let moving = Moving::held(body, hand);
     // The gripper that leaves turns about its own centre, which moves in a box that is wider by its reach.
-    let of_gripper = task.motion.gripper.map_or(0.0, |gripper| 2.0 * Moving::gripper(gripper).reach);
+    let of_gripper = hand.map_or(0.0, |hand| 2.0 * Moving::gripper(hand).reach);
     let within_reach = box_around(region, [], moving.reach + of_gripper);
     let obstacles = Obstacles::build(task, &within_reach, arena, meter)?;
-    let workspace = task.motion.workspace.map(|aabb| Workspace::new(aabb, task.object.surface().aabb()));
+    let of_object = task.object.surface().aabb();
+    let workspace = task.motion.workspace.map(|aabb| Workspace::new(aabb, of_object));
     let mut space = Space::of_object(moving, obstacles, workspace, arena)?;
     space.make_room(free);
     Ok(space)

@@ -422,8 +422,14 @@ mod tests {
         let tree = PointTree::build(&points, &mut arena, &meter).unwrap();
         let (patches, representatives) =
             (vec![Zeroable::zeroed(); count], (0..count as u32).collect::<Vec<_>>());
-        let support =
-            Support { tree, patches: &patches, representatives: &representatives, groups: &[], reach: 0.0 };
+        let support = Support {
+            tree,
+            patches: &patches,
+            representatives: &representatives,
+            groups: &[],
+            reach: 0.0,
+            frame: Pose::identity(),
+        };
         let touch = Touch {
             distance: 0.0,
             at: points[0],

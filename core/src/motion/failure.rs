@@ -1,5 +1,6 @@
 //! Why there is no path.
 
+use crate::mechanics::Frames;
 use crate::monitor::Stop;
 use core::fmt;
 
@@ -90,6 +91,17 @@ impl PlanFailure {
             Self::GripperCannotLeave => "gripper_cannot_leave",
             Self::Stopped(_) => "stopped",
         }
+    }
+
+    /// The same in the caller's coordinates.
+    pub(super) fn outwards(mut self, frames: &Frames) -> Self {
+        if let Self::GoalInCollision(collision)
+        | Self::StartInCollision(collision)
+        | Self::GripperCannotOpen(collision) = &mut self
+        {
+            collision.at = frames.on_supporter(&collision.at.into()).into();
+        }
+        self
     }
 
     /// What collides with what, if that is the reason.

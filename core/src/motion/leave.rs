@@ -2,7 +2,7 @@
 
 use super::end::End;
 use super::failure::PlanFailure;
-use super::gripper::Gripper;
+use super::gripper::Hand;
 use super::path::MAX_CLEARANCE;
 use super::placement::{Leg, Placement};
 use super::space::{Moving, Space};
@@ -29,7 +29,7 @@ pub(super) fn open(space: &Space, at: &Placement, meter: &mut Meter) -> Result<(
 }
 
 /// The straight way that the gripper is meant to leave by, from the rest pose of the object; `None` if there is none.
-pub(super) fn straight(gripper: &Gripper, rest: &Pose) -> Option<Leg> {
-    let shift = rest.rotation * Vector::from(gripper.retreat);
+pub(super) fn straight(hand: &Hand, rest: &Pose) -> Option<Leg> {
+    let shift = rest.rotation * hand.retreat;
     (shift.norm_squared() > 0.0).then_some(Leg { shift, turn: Vector::zeros() })
 }

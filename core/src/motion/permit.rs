@@ -4,11 +4,13 @@ use super::placement::{Leg, Placement};
 use super::route::{Route, parts};
 use crate::geometry::{Point, Pose};
 use crate::hanging::Distance;
+use crate::mechanics::Frames;
 use crate::monitor::{Meter, Stop};
 
 /// Asks the caller whether poses are accepted, and counts how often.
 pub(super) struct Permit<'p> {
     accepts: &'p mut dyn FnMut(&Pose) -> bool,
+    frames: Frames,
     /// Centre of what moves, in its own coordinates.
     centre: Point,
     pub(super) asked: usize,
@@ -16,13 +18,13 @@ pub(super) struct Permit<'p> {
 }
 
 impl<'p> Permit<'p> {
-    pub(super) fn new(accepts: &'p mut dyn FnMut(&Pose) -> bool, centre: Point) -> Self {
-        Self { accepts, centre, asked: 0, refused: 0 }
+    pub(super) fn new(accepts: &'p mut dyn FnMut(&Pose) -> bool, frames: Frames, centre: Point) -> Self {
+        Self { accepts, frames, centre, asked: 0, refused: 0 }
     }
 
     pub(super) fn accepts(&mut self, at: &Placement) -> bool {
         self.asked += 1;
-        let is_accepted = (self.accepts)(&at.pose(&self.centre));
+        let is_accepted = (self.accepts)(&self.frames.outwards(&at.pose(&self.centre)));
         self.refused += usize::from(!is_accepted);
         is_accepted
     }

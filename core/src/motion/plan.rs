@@ -1,13 +1,13 @@
 //! Plans a path for one pose: of the object to it, and of the gripper away.
 
 use super::certify::certify;
-use super::clearance::{body_of, space_of};
+use super::clearance::{body_of, hand_of, space_of};
 use super::enclosed;
 use super::end::End;
 use super::error::PlanError;
 use super::exits::{box_around, outside};
 use super::failure::PlanFailure;
-use super::gripper::Gripper;
+use super::gripper::Hand;
 use super::leave::{open, straight};
 use super::lower::until_near;
 use super::path::{MAX_CLEARANCE, Outline, Plan, PlanCounts, Shape, Waypoint};
@@ -23,9 +23,9 @@ use super::timing::set_times;
 use super::tree::{Metric, Tree};
 use super::widen::widen;
 use super::written::Written;
-use crate::geometry::{Aabb, Pose, Vector, is_rigid};
+use crate::geometry::{Aabb, Pose, is_rigid};
 use crate::hanging::HangingPose;
-use crate::mechanics::Body;
+use crate::mechanics::{Body, Frames};
 use crate::memory::{Arena, Limits, OutOfMemory, larger, model_bytes};
 use crate::monitor::{Meter, Monitor};
 use crate::random::Random;
@@ -91,13 +91,21 @@ pub(super) fn outline(
     let arena = Arena::new(memory, needed)?;
     let body = body_of(task)?;
     let mut meter = Meter::new(monitor);
-    let mut planner = Planner { task, body, counts: PlanCounts::default(), meter: &mut meter };
-    let mut permit = Permit::new(accepts, body.centre);
-    let path = match planner.run(goal, arena, waypoints, &mut permit) {
+    let (frames, hand) = (task.object.frames_with(task.supporter), hand_of(task));
+    let start = task.motion.start.map(|start| frames.inwards(&start));
+    let rest = goal.rest.map_or(goal.pose, |rest| rest.pose);
+    let goal = [&goal.pose, &rest].map(|pose| frames.inwards(pose));
+    let mut planner = Planner { task, frames, hand, body, counts: PlanCounts::default(), meter: &mut meter };
+    let mut permit = Permit::new(accepts, frames, body.centre);
+    let path = match planner.run(start, goal, arena, waypoints, &mut permit) {
         Ok(shape) => Ok(shape),
-        Err(End::Failure(failure)) => Err(failure),
+        Err(End::Failure(failure)) => Err(failure.outwards(&frames)),
         Err(End::Error(error)) => return Err(error),
     };
+    let written = path.as_ref().map_or(0, |shape| shape.object + shape.gripper);
+    for waypoint in waypoints.iter_mut().take(written) {
+        waypoint.pose = frames.outwards(&waypoint.pose);
+    }
     let counts = PlanCounts { asked: permit.asked, poses: planner.meter.poses, ..planner.counts };
     meter.progress(1.0);
     Ok(Outline { path, counts, work: meter.work })
@@ -130,33 +138,35 @@ impl<'s> Room<'s> {
 
 struct Planner<'q, 'a, 'm> {
     task: &'q Task<'a>,
+    frames: Frames,
+    hand: Option<Hand<'a>>,
     body: Body<'a>,
     counts: PlanCounts,
     meter: &'q mut Meter<'m>,
 }
 
 impl<'a> Planner<'_, 'a, '_> {
+    /// Plans from `start`, or from anywhere outside, to the release and rest poses, all of them from frame to frame.
     fn run(
         &mut self,
-        goal: &HangingPose,
+        start: Option<Pose>,
+        [goal, rest]: [Pose; 2],
         arena: Arena<'a>,
         waypoints: &mut [Waypoint],
         permit: &mut Permit,
     ) -> Result<Shape, End> {
         let (motion, body) = (&self.task.motion, self.body);
-        let rest = goal.rest.map_or(goal.pose, |rest| rest.pose);
-        let [release, resting] = [&goal.pose, &rest].map(|pose| Placement::of(pose, &body.centre));
-        let start = motion.start.map(|start| Placement::of(&start, &body.centre));
-        let reach = Moving::held(body, motion.gripper).reach;
+        let [release, resting] = [&goal, &rest].map(|pose| Placement::of(pose, &body.centre));
+        let free = [goal, start.unwrap_or(goal)];
+        let start = start.map(|start| Placement::of(&start, &body.centre));
+        let reach = Moving::held(body, self.hand).reach;
         let supporter = self.task.supporter.points().aabb();
-        let retreat =
-            motion.gripper.map(|gripper| release.centre() + rest.rotation * Vector::from(gripper.retreat));
+        let retreat = self.hand.map(|hand| release.centre() + rest.rotation * hand.retreat);
         let ends = start.iter().chain([&release]).map(Placement::centre).chain(retreat);
         let region = box_around(&supporter, ends, MARGIN * reach);
 
         let mut arena = arena;
-        let free = [goal.pose, motion.start.unwrap_or(goal.pose)];
-        let mut space = space_of(self.task, &region, &free, &mut arena, self.meter)?;
+        let mut space = space_of(self.task, &region, free, &mut arena, self.meter)?;
         let mut room = Room::new(motion.nodes, &mut arena)?;
 
         let clearance = self.way_of_object(
@@ -173,9 +183,9 @@ impl<'a> Planner<'_, 'a, '_> {
         written.leg(&release, &lowering, &body.centre);
         let lowered = release.after(&lowering, 1.0).pose(&body.centre);
         let object = written.count;
-        if let Some(gripper) = motion.gripper {
-            self.way_of_gripper(&space, &gripper, (&region, &lowered), &mut room)?;
-            written.route(&room.short, &gripper.centre());
+        if let Some(hand) = self.hand {
+            self.way_of_gripper(&space, &hand, (&region, &lowered), &mut room)?;
+            written.route(&room.short, &hand.centre());
         }
         let (needed, given) = (written.count, waypoints.len());
         let gripper = needed - object;
@@ -337,18 +347,18 @@ impl<'a> Planner<'_, 'a, '_> {
     fn way_of_gripper(
         &mut self,
         space: &Space<'a>,
-        gripper: &Gripper<'a>,
+        hand: &Hand<'a>,
         (region, rest): (&Aabb, &Pose),
         room: &mut Room,
     ) -> Result<(), End> {
-        let moving = Moving::gripper(*gripper);
+        let moving = Moving::gripper(*hand);
         let obstacles = space.obstacles.with_object(self.body, *rest);
         let mut space = Space::of_gripper(moving, obstacles);
         let at = Placement::of(rest, &moving.centre);
         open(&space, &at, self.meter)?;
         let kept = space.nearest(&at, MAX_CLEARANCE, self.meter)?.distance;
         let required = (KEPT * kept).min(self.task.motion.clearance);
-        if let Some(leg) = straight(gripper, rest)
+        if let Some(leg) = straight(hand, rest)
             && space.way(&at, &leg, required, self.meter)?.is_free()
         {
             room.short.clear();
@@ -363,7 +373,7 @@ impl<'a> Planner<'_, 'a, '_> {
         let region = box_around(region, [rested], moving.reach);
         let anywhere = &mut |_: &Pose| true;
         room.trees[GOAL].add(at, None, MAX_CLEARANCE);
-        let permit = &mut Permit::new(anywhere, moving.centre);
+        let permit = &mut Permit::new(anywhere, self.frames, moving.centre);
         let found = match self.add_starts(&mut space, &everything, &at, room) {
             Ok(()) => self.search(&mut space, required, (&region, &at), (&mut *room, None), permit),
             Err(end) => Err(end),
@@ -386,7 +396,7 @@ impl<'a> Planner<'_, 'a, '_> {
         let (motion, mut path) = (&self.task.motion, path);
         let (object, rest) = waypoints.split_at_mut_checked(path.object).unwrap_or_default();
         let gripper = rest.get_mut(..path.gripper).unwrap_or_default();
-        let centre = motion.gripper.map_or(self.body.centre, |gripper| gripper.centre());
+        let centre = self.hand.map_or(self.body.centre, |hand| hand.centre());
         if motion.take_off {
             object.reverse();
             gripper.reverse();

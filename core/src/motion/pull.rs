@@ -84,11 +84,7 @@ impl Search<'_, '_, '_> {
         let (mut at, mut direction, mut without, mut farthest) = (0, direction, 0, 0.0_f32);
         for pull in 1..=ALONG_BAR {
             let here = self.trees[GOAL].placement(at).pose(&centre) * point;
-            let mut touches = self.touches(at, LEADING_RANGE, meter)?;
-            let support = self.space.obstacles.support;
-            let away = |touch: &Touch| (touch.at - here).norm_squared();
-            touches.sort_unstable_by(|a, b| away(a).total_cmp(&away(b)));
-            let nearest = touches.iter().find_map(|touch| support.bar_near(&touch.at, &touch.normal));
+            let nearest = self.nearest_bar(at, &here, meter)?;
             if let Some(bar) = nearest {
                 direction = if bar.dot(&direction) < 0.0 { -bar } else { bar };
             }
@@ -115,6 +111,25 @@ impl Search<'_, '_, '_> {
             let _ = self.ends.push((at, Some(point)));
         }
         self.meets(GOAL, at, route, permit, meter)
+    }
+
+    /// The direction of the bar that the object touches at a node closest to a point; its sign has no meaning. A function of its own, so that
+    /// the touches are off the stack while the object is pulled.
+    #[inline(never)]
+    fn nearest_bar(&mut self, at: usize, point: &Point, meter: &mut Meter) -> Result<Option<Vector>, Stop> {
+        let touches = self.touches(at, LEADING_RANGE, meter)?;
+        let support = self.space.obstacles.support;
+        let away = |touch: &Touch| (touch.at - point).norm_squared();
+        let mut asked = f32::NEG_INFINITY;
+        loop {
+            let left = touches.iter().filter(|touch| away(touch) > asked);
+            let Some(touch) = left.min_by(|a, b| away(a).total_cmp(&away(b))) else { return Ok(None) };
+            let bar = support.bar_near(&touch.at, &touch.normal);
+            if bar.is_some() {
+                return Ok(bar);
+            }
+            asked = away(touch);
+        }
     }
 
     /// Pulls the object on from one of the ends in one of the directions, each pair after the other. Returns the last node, if it moves

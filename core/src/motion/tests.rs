@@ -209,7 +209,7 @@ impl Scene {
             for step in 0..20 {
                 let pose = from.lerp_slerp(&to, step as f32 / 20.0).inverse();
                 for point in self.points.iter().chain(request.scene) {
-                    let at = pose * Point::from(*point);
+                    let at = object.frame() * (pose * Point::from(*point));
                     let is_clear = field.distance(&at) > 0.001 || !object.surface().is_inside(&at);
                     assert!(is_clear, "{at} is inside at {}", pair[0].seconds);
                 }

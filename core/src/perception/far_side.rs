@@ -8,7 +8,7 @@
 
 use super::cleaning::{self, Cleaned};
 use super::visibility;
-use crate::geometry::{Neighbour, Point, PointTree, PointTreeSlots, Vector, any_perpendicular};
+use crate::geometry::{Neighbour, Point, PointTree, PointTreeSlots, Vector, Viewpoints, any_perpendicular};
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Unfinished};
 
@@ -57,7 +57,7 @@ pub(crate) const fn scratch_bytes(points: usize) -> usize {
 /// `viewpoints` left it unseen. Excluded points have no far side.
 pub(crate) fn add<'s>(
     seen: Cleaned<'s>,
-    viewpoints: &[Point],
+    viewpoints: Viewpoints,
     slots: &mut PointTreeSlots,
     arena: &mut Arena<'s>,
     meter: &Meter,
@@ -136,7 +136,7 @@ impl FarSide<'_> {
 fn find(
     tree: &PointTree,
     seen: &Cleaned,
-    viewpoints: &[Point],
+    viewpoints: Viewpoints,
     mut scratch: Arena,
     far: &mut FarSide,
     meter: &Meter,
@@ -219,6 +219,7 @@ fn is_at_edge(tree: &PointTree, normals: &[Vector], index: usize, neighbours: &[
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Pose;
     use crate::memory::model_bytes;
     use crate::perception::visibility;
     use crate::random::Random;
@@ -237,15 +238,35 @@ mod tests {
         let mut memory = vec![0; needed];
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let mut slots = PointTreeSlots::new(max_points(n), &mut arena).unwrap();
-        let seen =
-            cleaning::clean(points, normals, true, &mut slots, &mut arena, &Meter::unwatched()).unwrap();
+        let seen = cleaning::clean(
+            (points, &Pose::identity()),
+            normals,
+            true,
+            &mut slots,
+            &mut arena,
+            &Meter::unwatched(),
+        )
+        .unwrap();
         cleaning::spacing::measure(&slots.tree(), seen.spacings, &Meter::unwatched()).unwrap();
-        if !visibility::explain(&slots.tree(), seen.normals, seen.spacings, &[EYE], &Meter::unwatched())
-            .unwrap()
+        if !visibility::explain(
+            &slots.tree(),
+            seen.normals,
+            seen.spacings,
+            Viewpoints::new(&[EYE], &Pose::identity()),
+            &Meter::unwatched(),
+        )
+        .unwrap()
         {
             return Vec::new();
         }
-        let all = add(seen, &[EYE], &mut slots, &mut arena, &Meter::unwatched()).unwrap();
+        let all = add(
+            seen,
+            Viewpoints::new(&[EYE], &Pose::identity()),
+            &mut slots,
+            &mut arena,
+            &Meter::unwatched(),
+        )
+        .unwrap();
         let tree = slots.tree();
         let far = tree.points().iter().zip(all.is_guessed).filter(|(_, flag)| **flag > 0);
         far.map(|(point, _)| *point).collect()

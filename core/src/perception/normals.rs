@@ -3,7 +3,7 @@
 
 use super::orientation::{self, Given};
 use super::visibility;
-use crate::geometry::{Neighbour, Point, PointTree, Vector, least_eigenvector};
+use crate::geometry::{Neighbour, Point, PointTree, Vector, Viewpoints, least_eigenvector};
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Unfinished};
 use nalgebra::Matrix3;
@@ -26,15 +26,15 @@ pub(crate) fn complete(
     tree: &PointTree,
     normals: &mut [Vector],
     spacings: &[f32],
-    viewpoints: &[Point],
+    viewpoints: Viewpoints,
     up: Vector,
     mut scratch: Arena,
     meter: &Meter,
 ) -> Result<usize, Unfinished> {
     let missing = normals.iter().filter(|n| **n == Vector::zeros()).count();
-    let orient = |normals: &mut [Vector], scratch| match viewpoints {
-        [viewpoint] if visibility::explain(tree, normals, spacings, viewpoints, meter)? => {
-            face(tree, normals, viewpoint);
+    let orient = |normals: &mut [Vector], scratch| match viewpoints.single() {
+        Some(viewpoint) if visibility::explain(tree, normals, spacings, viewpoints, meter)? => {
+            face(tree, normals, &viewpoint);
             Ok(())
         }
         _ => orientation::orient(tree, normals, spacings, (viewpoints, up), scratch, meter),
@@ -122,6 +122,7 @@ fn follow_neighbours(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Pose;
     use crate::memory::model_bytes;
     use crate::perception::cleaning::spacing;
     use crate::perception::sampling;
@@ -159,7 +160,7 @@ mod tests {
             &tree,
             &mut normals,
             &spacings,
-            viewpoints,
+            Viewpoints::new(viewpoints, &Pose::identity()),
             Vector::z(),
             arena.scratch(),
             &Meter::unwatched(),
@@ -214,7 +215,7 @@ mod tests {
             &tree,
             &mut normals,
             &spacings(&tree),
-            &eyes,
+            Viewpoints::new(&eyes, &Pose::identity()),
             Vector::z(),
             arena.scratch(),
             &Meter::unwatched(),
@@ -282,8 +283,16 @@ mod tests {
         let mut arena = Arena::new(&mut memory, needed).unwrap();
         let tree = PointTree::build(&[Point::origin()], &mut arena, &Meter::unwatched()).unwrap();
         let mut normals = [Vector::zeros()];
-        complete(&tree, &mut normals, &[0.0], &[], Vector::z(), arena.scratch(), &Meter::unwatched())
-            .unwrap();
+        complete(
+            &tree,
+            &mut normals,
+            &[0.0],
+            Viewpoints::new(&[], &Pose::identity()),
+            Vector::z(),
+            arena.scratch(),
+            &Meter::unwatched(),
+        )
+        .unwrap();
         assert!((normals[0].norm() - 1.0).abs() < 1e-5);
     }
 }

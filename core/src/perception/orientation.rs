@@ -2,7 +2,7 @@
 //! the solid.
 
 use super::visibility;
-use crate::geometry::{Neighbour, Point, PointTree, Vector};
+use crate::geometry::{Neighbour, Point, PointTree, Vector, Viewpoints};
 use crate::heap::Heap;
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop, Unfinished};
@@ -98,7 +98,7 @@ pub(crate) fn orient(
     tree: &PointTree,
     normals: &mut [Vector],
     spacings: &[f32],
-    (viewpoints, up): (&[Point], Vector),
+    (viewpoints, up): (Viewpoints, Vector),
     mut scratch: Arena,
     meter: &Meter,
 ) -> Result<(), Unfinished> {

@@ -1,6 +1,6 @@
 //! Which points of a cloud a viewpoint can have seen.
 
-use crate::geometry::{Point, PointTree, Vector, unit_or};
+use crate::geometry::{Point, PointTree, Vector, Viewpoints, unit_or};
 use crate::monitor::{Meter, Stop};
 
 /// Range in which points hide others, metres: thicker than what things hang on. What is farther away hides as well, but
@@ -30,10 +30,10 @@ pub(crate) fn best_view(
     tree: &PointTree,
     (point, normal): (&Point, &Vector),
     spacing: f32,
-    viewpoints: &[Point],
+    viewpoints: Viewpoints,
 ) -> Option<(Vector, f32)> {
     let mut best = None::<(Vector, f32)>;
-    for viewpoint in viewpoints {
+    for viewpoint in viewpoints.iter() {
         let way = unit_or(viewpoint - point, Vector::zeros());
         let cosine = way.dot(normal);
         let is_better = best.is_none_or(|(_, before)| cosine.abs() > before.abs());
@@ -49,7 +49,7 @@ pub(crate) fn explain(
     tree: &PointTree,
     normals: &[Vector],
     spacings: &[f32],
-    viewpoints: &[Point],
+    viewpoints: Viewpoints,
     meter: &Meter,
 ) -> Result<bool, Stop> {
     let probes = normals.len().min(PROBES);

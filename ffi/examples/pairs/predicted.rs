@@ -125,13 +125,13 @@ fn of_object(object: &Object) -> String {
     let mass = object.mass();
     hash.floats([&mass.area]);
     hash.floats(object.centre_of_mass().coords.as_slice());
-    for contact in object.places().contacts() {
+    for contact in object.contacts() {
         for vector in [contact.position.coords, contact.normal, contact.bar_direction] {
             hash.floats(vector.as_slice());
         }
         hash.floats([&contact.capture, &contact.room, &contact.passage]);
     }
-    for site in object.places().sites() {
+    for site in object.sites() {
         hash.words([site.contact_points]);
         for vector in [site.position.coords, site.hanging_direction, site.contact_point.coords] {
             hash.floats(vector.as_slice());
@@ -163,12 +163,12 @@ fn of_supporter(supporter: &Supporter) -> String {
         normals.reversed,
     ];
     hash.words(counts.map(|count| count as u32));
-    for contact in supporter.places().contacts() {
+    for contact in supporter.contacts() {
         for vector in [contact.position.coords, contact.normal, contact.bar_direction] {
             hash.floats(vector.as_slice());
         }
     }
-    for site in supporter.places().sites() {
+    for site in supporter.sites() {
         for vector in [site.position.coords, site.hanging_direction, site.contact_point.coords] {
             hash.floats(vector.as_slice());
         }

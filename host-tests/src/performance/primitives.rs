@@ -72,7 +72,30 @@ impl Data {
             point + Vector::from_fn(|_, _| random.range(-0.005, 0.005) as f32)
         };
         let near_cloud = (0..QUERIES).map(near).collect();
-        Ok(Self { mesh, cloud, rays, points, near_cloud, depths: ball(&camera()?) })
+        Self { mesh, cloud, rays, points, near_cloud, depths: ball(&camera()?) }.in_frames()
+    }
+
+    /// The same in the frames in which the mesh and the cloud are analysed, where queries are made. The frames of the result are no
+    /// motions, but for rounding.
+    fn in_frames(mut self) -> Result<Self> {
+        let (mut object_memory, mut supporter_memory) = (Vec::new(), Vec::new());
+        let (of_object, of_supporter) =
+            (*self.object(&mut object_memory)?.frame(), *self.supporter(&mut supporter_memory)?.frame());
+        for vertex in &mut self.mesh.0 {
+            *vertex = (of_object * Point::from(*vertex)).into();
+        }
+        for (origin, direction) in &mut self.rays {
+            (*origin, *direction) = (of_object * *origin, of_object * *direction);
+        }
+        self.points.iter_mut().for_each(|point| *point = of_object * *point);
+        for point in &mut self.cloud.points {
+            *point = (of_supporter * Point::from(*point)).into();
+        }
+        for normal in self.cloud.normals.iter_mut().flatten() {
+            *normal = (of_supporter * Vector::from(*normal)).into();
+        }
+        self.near_cloud.iter_mut().for_each(|point| *point = of_supporter * *point);
+        Ok(self)
     }
 
     /// The mesh as the core takes it.

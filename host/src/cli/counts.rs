@@ -1,6 +1,6 @@
 //! How much was left after each step, as the JSON has it: one shape for both methods, zeros for the steps of the other one.
 
-use hangpose::hanging::{self, ObjectPlaces, SearchCounts, SupporterPlaces, contacts, sites};
+use hangpose::hanging::{self, SearchCounts, contacts, sites};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -62,11 +62,11 @@ impl From<&hanging::Counts> for Counts {
     }
 }
 
-impl From<&ObjectPlaces<'_>> for ObjectCounts {
-    fn from(places: &ObjectPlaces) -> Self {
-        match *places {
-            ObjectPlaces::Sites { counts, .. } => counts.into(),
-            ObjectPlaces::Contacts { counts, .. } => counts.into(),
+impl From<hanging::ObjectCounts> for ObjectCounts {
+    fn from(counts: hanging::ObjectCounts) -> Self {
+        match counts {
+            hanging::ObjectCounts::Sites(counts) => counts.into(),
+            hanging::ObjectCounts::Contacts(counts) => counts.into(),
         }
     }
 }
@@ -84,11 +84,11 @@ impl From<contacts::ObjectCounts> for ObjectCounts {
     }
 }
 
-impl From<&SupporterPlaces<'_>> for SupporterCounts {
-    fn from(places: &SupporterPlaces) -> Self {
-        match *places {
-            SupporterPlaces::Sites { counts, .. } => counts.into(),
-            SupporterPlaces::Contacts { counts, .. } => counts.into(),
+impl From<hanging::SupporterCounts> for SupporterCounts {
+    fn from(counts: hanging::SupporterCounts) -> Self {
+        match counts {
+            hanging::SupporterCounts::Sites(counts) => counts.into(),
+            hanging::SupporterCounts::Contacts(counts) => counts.into(),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::{InspectArguments, Role, terminal};
 use anyhow::Result;
 use hangpose::files::{self, MeshFile, SupporterFile};
 use hangpose::geometry::{MassProperties, Symmetry, Vector};
-use hangpose::hanging::{ObjectPlaces, SupporterPlaces};
+use hangpose::hanging::{ObjectCounts, SupporterCounts};
 use hangpose::{CentreOfMass, Monitor, analyze_object, analyze_supporter};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -47,9 +47,9 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
         mass: *object.mass(),
         centre_of_mass: object.centre_of_mass().into(),
         symmetries: json::symmetries(&object),
-        counts: object.places().into(),
-        sites: json::sites(object.places().sites()),
-        contacts: object.places().contacts(),
+        counts: object.counts().into(),
+        sites: json::sites(object.sites()),
+        contacts: object.contacts().collect(),
         seconds,
     };
     if arguments.json {
@@ -82,20 +82,20 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
         let turns = if *fold == 0 { "any turn".into() } else { format!("turns by 1/{fold}") };
         text += &format!("symmetry        {turns} about {}\n", direction(axis));
     }
-    text += &match object.places() {
-        ObjectPlaces::Sites { counts, .. } => format!(
+    text += &match object.counts() {
+        ObjectCounts::Sites(counts) => format!(
             "contact points  {}, in {} clusters, {} with free space, {} encircled, {} different\n",
             counts.contact_points, counts.clusters, counts.with_free_space, counts.encircled, counts.sites
         ),
-        ObjectPlaces::Contacts { counts, .. } => format!(
+        ObjectCounts::Contacts(counts) => format!(
             "contact points  {}, {} of them contact candidates, the deepest capture first\n",
             counts.contact_points, counts.contacts
         ),
     };
-    if !object.places().contacts().is_empty() {
+    if object.contacts().len() > 0 {
         text += "index  position, mm               bar direction        capture depth, mm\n";
     }
-    for (index, contact) in object.places().contacts().iter().enumerate().take(SHOWN) {
+    for (index, contact) in object.contacts().enumerate().take(SHOWN) {
         text += &format!(
             "{index:5}  {}  {}  {:15.1}\n",
             millimetres(&contact.position.coords),
@@ -103,10 +103,10 @@ fn object(file: MeshFile, arguments: &InspectArguments) -> Result<String> {
             contact.capture * 1000.0,
         );
     }
-    if !object.places().sites().is_empty() {
+    if object.sites().len() > 0 {
         text += "site  position, mm               hanging direction      free space, mm  encircled  points\n";
     }
-    for (index, site) in object.places().sites().iter().enumerate() {
+    for (index, site) in object.sites().enumerate() {
         text += &format!(
             "{index:4}  {}  {}  {:14.1}  {:9.2}  {:6}\n",
             millimetres(&site.position.coords),
@@ -130,7 +130,7 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
     let supporter = analyze_supporter(&cloud, &params, &mut memory, &Monitor::new())?;
     let seconds = start.elapsed().as_secs_f64();
     input::tell_of_cloud(path, &supporter, &cloud);
-    let extents = supporter.points().aabb().extents();
+    let extents = supporter.aabb().extents();
     let inspected = InspectedSupporter {
         schema: json::SCHEMA,
         role: "supporter",
@@ -142,9 +142,9 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
         points_on_planes: supporter.cleaning().on_planes,
         normals_estimated: supporter.normals().estimated,
         normals_renormalised: supporter.normals().renormalised,
-        counts: supporter.places().into(),
-        sites: json::sites(supporter.places().sites()),
-        contacts: supporter.places().contacts(),
+        counts: supporter.counts().into(),
+        sites: json::sites(supporter.sites()),
+        contacts: supporter.contacts().collect(),
         seconds,
     };
     if arguments.json {
@@ -160,32 +160,32 @@ fn supporter(file: SupporterFile, arguments: &InspectArguments) -> Result<String
     );
     text += &format!("size            {} mm\n", millimetres(&extents));
     text += &scale(&inspected.scale_warning);
-    text += &match supporter.places() {
-        SupporterPlaces::Sites { counts, .. } => format!(
+    text += &match supporter.counts() {
+        SupporterCounts::Sites(counts) => format!(
             "contact points  {}, in {} clusters, {} of them sites\n",
             counts.contact_points, counts.clusters, counts.sites
         ),
-        SupporterPlaces::Contacts { counts, .. } => {
+        SupporterCounts::Contacts(counts) => {
             format!(
                 "contact points  {}, {} of them contact candidates\n",
                 counts.contact_points, counts.contacts
             )
         }
     };
-    if !supporter.places().contacts().is_empty() {
+    if supporter.contacts().len() > 0 {
         text += "index  position, mm               bar direction\n";
     }
-    for (index, contact) in supporter.places().contacts().iter().enumerate().take(SHOWN) {
+    for (index, contact) in supporter.contacts().enumerate().take(SHOWN) {
         text += &format!(
             "{index:5}  {}  {}\n",
             millimetres(&contact.position.coords),
             direction(&contact.bar_direction)
         );
     }
-    if !supporter.places().sites().is_empty() {
+    if supporter.sites().len() > 0 {
         text += "site  position, mm               hanging direction      radius, mm  to the boundary, mm\n";
     }
-    for (index, site) in supporter.places().sites().iter().enumerate() {
+    for (index, site) in supporter.sites().enumerate() {
         let [d1, d2] = site.boundary_distances.map(|d| d * 1000.0);
         text += &format!(
             "{index:4}  {}  {}  {:10.1}  {d1:8.1}  {d2:8.1}\n",

@@ -6,7 +6,7 @@ use hangpose::Params;
 use hangpose::geometry::{self, MassProperties};
 use hangpose::hanging::contacts::{ObjectContact, SupportContact};
 use hangpose::hanging::sites::{Cost, HangingSite, SupportSite};
-use hangpose::hanging::{HangingPose, Object, Rejection, Stage, Tolerance};
+use hangpose::hanging::{HangingPose, Object, Rejection, Stage, Supporter, Tolerance};
 use hangpose::mechanics::{Contact, Kind, Margin, Unseen};
 use hangpose::motion::{Plan, PlanCounts};
 use serde::Serialize;
@@ -49,8 +49,8 @@ pub(super) struct Pose<'a> {
     contacts: Option<&'a [Contact]>,
     /// Cost of the published matching; null where poses come from contact candidates.
     cost: Option<Cost>,
-    object_site: Option<Site<'a, HangingSite>>,
-    supporter_site: Option<Site<'a, SupportSite>>,
+    object_site: Option<Site<HangingSite>>,
+    supporter_site: Option<Site<SupportSite>>,
     /// Absent where no path was planned, null where none was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     path: Option<Option<path::Path>>,
@@ -71,10 +71,10 @@ pub(super) struct Symmetry {
 
 /// A site with its index among the sites of the object or the supporter.
 #[derive(Serialize)]
-pub(super) struct Site<'a, T> {
+pub(super) struct Site<T> {
     pub(super) index: usize,
     #[serde(flatten)]
-    pub(super) site: &'a T,
+    pub(super) site: T,
 }
 
 #[derive(Serialize)]
@@ -166,7 +166,7 @@ impl PlanStats {
 
 /// Output of `inspect` for an object.
 #[derive(Serialize)]
-pub(super) struct InspectedObject<'a> {
+pub(super) struct InspectedObject {
     pub(super) schema: u32,
     #[serde(rename = "as")]
     pub(super) role: &'static str,
@@ -179,14 +179,14 @@ pub(super) struct InspectedObject<'a> {
     pub(super) centre_of_mass: [f32; 3],
     pub(super) symmetries: Vec<Symmetry>,
     pub(super) counts: ObjectCounts,
-    pub(super) sites: Vec<Site<'a, HangingSite>>,
-    pub(super) contacts: &'a [ObjectContact],
+    pub(super) sites: Vec<Site<HangingSite>>,
+    pub(super) contacts: Vec<ObjectContact>,
     pub(super) seconds: f64,
 }
 
 /// Output of `inspect` for a supporter.
 #[derive(Serialize)]
-pub(super) struct InspectedSupporter<'a> {
+pub(super) struct InspectedSupporter {
     pub(super) schema: u32,
     #[serde(rename = "as")]
     pub(super) role: &'static str,
@@ -203,18 +203,13 @@ pub(super) struct InspectedSupporter<'a> {
     pub(super) normals_estimated: usize,
     pub(super) normals_renormalised: usize,
     pub(super) counts: SupporterCounts,
-    pub(super) sites: Vec<Site<'a, SupportSite>>,
-    pub(super) contacts: &'a [SupportContact],
+    pub(super) sites: Vec<Site<SupportSite>>,
+    pub(super) contacts: Vec<SupportContact>,
     pub(super) seconds: f64,
 }
 
 impl<'a> Pose<'a> {
-    pub(super) fn new(
-        rank: usize,
-        pose: &'a HangingPose,
-        object: &'a [HangingSite],
-        supporter: &'a [SupportSite],
-    ) -> Self {
+    pub(super) fn new(rank: usize, pose: &'a HangingPose, object: &Object, supporter: &Supporter) -> Self {
         let matrix = |pose: &hangpose::geometry::Pose| {
             let rows = pose.to_homogeneous().transpose();
             core::array::from_fn(|k| rows.as_slice()[k])
@@ -237,8 +232,8 @@ impl<'a> Pose<'a> {
             position: pose.pose.translation.vector.into(),
             quaternion_xyzw: pose.pose.rotation.coords.into(),
             cost: matched.map(|matched| matched.cost),
-            object_site: matched.map(|matched| site(object, matched.object_site)),
-            supporter_site: matched.map(|matched| site(supporter, matched.support_site)),
+            object_site: matched.and_then(|matched| site(object.sites(), matched.object_site)),
+            supporter_site: matched.and_then(|matched| site(supporter.sites(), matched.support_site)),
             path: None,
             path_failure: None,
         }
@@ -262,13 +257,14 @@ pub(super) fn symmetries(object: &Object) -> Vec<Symmetry> {
 }
 
 /// The site with this index.
-fn site<T>(sites: &[T], index: u32) -> Site<'_, T> {
-    Site { index: index as usize, site: &sites[index as usize] }
+fn site<T>(mut sites: impl Iterator<Item = T>, index: u32) -> Option<Site<T>> {
+    let index = index as usize;
+    sites.nth(index).map(|site| Site { index, site })
 }
 
 /// All sites with their indices.
-pub(super) fn sites<T>(sites: &[T]) -> Vec<Site<'_, T>> {
-    sites.iter().enumerate().map(|(index, site)| Site { index, site }).collect()
+pub(super) fn sites<T>(sites: impl Iterator<Item = T>) -> Vec<Site<T>> {
+    sites.enumerate().map(|(index, site)| Site { index, site }).collect()
 }
 
 impl From<&Rejection> for Reason {

@@ -151,7 +151,7 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
             poses: (1..)
                 .zip(&found.poses)
                 .map(|(rank, pose)| {
-                    let pose = Pose::new(rank, pose, object.places().sites(), supporter.places().sites());
+                    let pose = Pose::new(rank, pose, &object, &supporter);
                     match planned {
                         Some(planned) => planned.add_to(pose, rank - 1, points.origin),
                         None => pose,
@@ -163,14 +163,8 @@ pub(crate) fn run(arguments: &PredictArguments) -> Result<ExitCode> {
             stats: Stats {
                 seconds,
                 memory_bytes,
-                sites: PerPart {
-                    object: object.places().sites().len(),
-                    supporter: supporter.places().sites().len(),
-                },
-                contacts: PerPart {
-                    object: object.places().contacts().len(),
-                    supporter: supporter.places().contacts().len(),
-                },
+                sites: PerPart { object: object.sites().len(), supporter: supporter.sites().len() },
+                contacts: PerPart { object: object.contacts().len(), supporter: supporter.contacts().len() },
                 counts: found.counts.as_ref().map(Into::into),
             },
             params,
@@ -300,10 +294,10 @@ fn table(
         mesh.triangles().len(),
         closedness(object.mass()),
         size(&mesh.aabb()),
-        candidates(object.places().sites().len(), "hanging sites", object.places().contacts().len()),
+        candidates(object.sites().len(), "hanging sites", object.contacts().len()),
         cloud.points().len(),
-        size(&supporter.points().aabb()),
-        candidates(supporter.places().sites().len(), "support sites", supporter.places().contacts().len()),
+        size(&supporter.aabb()),
+        candidates(supporter.sites().len(), "support sites", supporter.contacts().len()),
     );
     if let (Some(rejection), []) = (&found.rejection, &found.poses[..]) {
         text += &format!("nothing hangs: {}\n", rejection.stage);
@@ -323,8 +317,13 @@ fn table(
     for (rank, pose) in (1..).zip(&found.poses) {
         if let Some(SiteMatch { cost, object_site, support_site, .. }) = &pose.matched {
             let Cost { collision, boundary, contact_area, total } = cost;
-            let on = point(&supporter.places().sites()[*support_site as usize].position);
-            let with = point(&object.places().sites()[*object_site as usize].position);
+            let on = supporter
+                .sites()
+                .nth(*support_site as usize)
+                .map_or_else(Point::origin, |site| site.position);
+            let with =
+                object.sites().nth(*object_site as usize).map_or_else(Point::origin, |site| site.position);
+            let (on, with) = (point(&on), point(&with));
             text += &format!(
                 "{rank:4} {total:8.3} {collision:10} {boundary:9.3} {contact_area:13.3} {on} {with}\n"
             );

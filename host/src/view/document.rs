@@ -214,9 +214,8 @@ fn some_that_fell(released: &[(Pose, Fate)]) -> impl Iterator<Item = &(Pose, Fat
 fn object_json(scene: &Scene) -> Value {
     let mesh = ShownMesh::of(scene.mesh);
     let samples = sample_supporter(scene.mesh, scene.params.samples.min(MAX_SAMPLES), scene.params.seed);
-    let (contacts, sites) = (scene.object.places().contacts(), scene.object.places().sites());
-    let places = contacts.iter().map(|contact| (contact.position, contact.normal));
-    let places = places.chain(sites.iter().map(|site| (site.position, site.hanging_direction)));
+    let places = scene.object.contacts().map(|contact| (contact.position, contact.normal));
+    let places = places.chain(scene.object.sites().map(|site| (site.position, site.hanging_direction)));
     json!({
         "name": scene.object_name,
         "triangle_count": scene.mesh.triangles().len(),
@@ -231,9 +230,8 @@ fn object_json(scene: &Scene) -> Value {
 
 fn supporter_json(scene: &Scene) -> Value {
     let (points, normals) = shown_points(scene.cloud);
-    let (contacts, sites) = (scene.supporter.places().contacts(), scene.supporter.places().sites());
-    let places = contacts.iter().map(|contact| (contact.position, contact.normal));
-    let places = places.chain(sites.iter().map(|site| (site.position, site.hanging_direction)));
+    let places = scene.supporter.contacts().map(|contact| (contact.position, contact.normal));
+    let places = places.chain(scene.supporter.sites().map(|site| (site.position, site.hanging_direction)));
     json!({
         "name": scene.supporter_name,
         "point_count": scene.cloud.points().len(),

@@ -68,6 +68,7 @@ fn the_field_of_the_samples_is_their_distance() {
         let aabb = mesh.aabb();
         let (middle, extents): (Point3<f64>, Vector3<f64>) = (aabb.centre().cast(), aabb.extents().cast());
         let mut random = Random(seed);
+        let frame = object.frame();
         check(name, field, object.surface(), &mut |i| {
             let triangle = file.triangles[random.below(file.triangles.len())];
             let corners = triangle.map(|vertex| double(file.vertices[vertex as usize]));
@@ -80,7 +81,7 @@ fn the_field_of_the_samples_is_their_distance() {
                 2 => on_mesh + random.in_cube() * f64::from(field.voxel_size()),
                 _ => on_mesh + random.in_cube() * f64::from(5.0 * field.voxel_size()),
             };
-            exact.cast()
+            frame * exact.cast::<f32>()
         });
     }
 }

@@ -58,9 +58,9 @@ fn meshes_from_files_agree_with_parry() {
     }
     let mut random = Random(4);
     for shape in meshes_below(&directory).iter().filter_map(|path| read(path)) {
-        let truth = Truth::of(&shape);
-        shape.with_surface(|ours| {
-            let rays = rays::check(&shape, ours, &truth, &mut random, 50);
+        shape.with_surface(|ours, shape| {
+            let truth = Truth::of(shape);
+            let rays = rays::check(shape, ours, &truth, &mut random, 50);
             let points = surface::check(&shape.name, ours, &truth, &mut random, 100);
             eprintln!("{} ({} triangles): {rays:?} {points:?}", shape.name, shape.triangles.len());
         });

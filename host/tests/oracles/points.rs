@@ -1,7 +1,6 @@
 //! Neighbour queries, compared with brute force in double precision.
 
 use crate::random::Random;
-use crate::truth::double;
 use hangpose_core::geometry::{Cloud, Neighbour, Point, PointTree};
 use hangpose_core::hanging::Supporter;
 use hangpose_core::memory::Limits;
@@ -34,14 +33,16 @@ fn clouds(random: &mut Random) -> Vec<(&'static str, Vec<[f32; 3]>)> {
     ]
 }
 
-fn with_tree(points: &[[f32; 3]], check: impl FnOnce(&PointTree)) {
+/// Calls `check` with a tree and the points that it was made from, both in the frame of the supporter.
+fn with_tree(points: &[[f32; 3]], check: impl FnOnce(&PointTree, &[Point])) {
     // With normals that point down there is nothing to estimate and no support site.
     let normals = vec![[0.0, 0.0, -1.0]; points.len()];
     let limits = Limits::of_points(points.len());
     let mut memory = vec![0; Supporter::bytes(&limits)];
     let cloud = Cloud::new(points, Some(&normals)).unwrap();
     let supporter = Supporter::analyze(&cloud, &Params::paper(), &mut memory, &Monitor::new()).unwrap();
-    check(supporter.points());
+    let points: Vec<Point> = points.iter().map(|point| supporter.frame() * Point::from(*point)).collect();
+    check(supporter.points(), &points);
 }
 
 /// Squared distances of all points, in the order of the tree.
@@ -95,15 +96,13 @@ fn check(name: &str, tree: &PointTree, query: &Point) {
 fn neighbours_are_those_of_brute_force() {
     let mut random = Random(5);
     for (name, points) in clouds(&mut random) {
-        with_tree(&points, |tree| {
+        with_tree(&points, |tree, points| {
             let mut order = tree.order().to_vec();
             order.sort_unstable();
             assert!(order.iter().copied().eq(0..points.len() as u32), "{name}: not a permutation");
-            assert!(
-                tree.order().iter().zip(tree.points()).all(|(&i, p)| Point::from(points[i as usize]) == *p)
-            );
+            assert!(tree.order().iter().zip(tree.points()).all(|(&i, p)| points[i as usize] == *p));
             for i in 0..150 {
-                let at = double(points[random.below(points.len())]);
+                let at = points[random.below(points.len())].cast::<f64>();
                 let query: Point3<f64> = match i % 3 {
                     0 => at,
                     1 => at + random.in_cube() * 0.01,

@@ -146,8 +146,8 @@ pub(crate) fn check(
 fn rays_hit_what_parry_hits() {
     let mut random = Random(2);
     for shape in shapes::all_places() {
-        let truth = Truth::of(&shape);
-        let worst = shape.with_surface(|surface| check(&shape, surface, &truth, &mut random, 120));
+        let worst =
+            shape.with_surface(|surface, shape| check(shape, surface, &Truth::of(shape), &mut random, 120));
         eprintln!("{}: {worst:?}", shape.name);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::random::Random;
 use hangpose::analyze_object;
-use hangpose_core::geometry::{Mesh, Surface};
+use hangpose_core::geometry::{Mesh, Point, Surface};
 use hangpose_core::{Monitor, Params};
 use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::TAU;
@@ -66,12 +66,15 @@ impl Shape {
         self
     }
 
-    /// Builds the core's surface through the public interface.
-    pub(crate) fn with_surface<R>(&self, check: impl FnOnce(&Surface) -> R) -> R {
+    /// Builds the core's surface through the public interface, and calls `check` with it and the shape in the same frame, that of the
+    /// object.
+    pub(crate) fn with_surface<R>(&self, check: impl FnOnce(&Surface, &Self) -> R) -> R {
         // Few samples and no distance field, since only the surface is used.
         let params = Params { samples: 100, ..Params::paper() };
         let (mesh, mut memory) = (self.mesh(), Vec::new());
-        check(analyze_object(&mesh, &params, &mut memory, &Monitor::new()).unwrap().surface())
+        let object = analyze_object(&mesh, &params, &mut memory, &Monitor::new()).unwrap();
+        let vertices = self.vertices.iter().map(|vertex| (object.frame() * Point::from(*vertex)).into());
+        check(object.surface(), &Self { vertices: vertices.collect(), ..self.clone() })
     }
 }
 

@@ -92,8 +92,8 @@ pub(crate) fn check(
 fn distances_signs_and_winding_numbers_are_parrys() {
     let mut random = Random(3);
     for shape in shapes::all_places() {
-        let truth = Truth::of(&shape);
-        let worst = shape.with_surface(|surface| check(&shape.name, surface, &truth, &mut random, 200));
+        let worst = shape
+            .with_surface(|surface, shape| check(&shape.name, surface, &Truth::of(shape), &mut random, 200));
         eprintln!("{}: {worst:?}", shape.name);
     }
 }

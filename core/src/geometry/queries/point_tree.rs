@@ -44,6 +44,12 @@ impl<'m> PointTreeSlots<'m> {
         })
     }
 
+    /// Memory for other use, for as many points: what the tree held is forgotten.
+    pub(crate) fn lend(&mut self, points: usize) -> &mut [Point] {
+        self.used = [0; 2];
+        self.points.get_mut(..points).unwrap_or_default()
+    }
+
     /// Arranges `points`, at least one, instead of those before.
     pub(crate) fn fill(&mut self, points: &[Point], meter: &Meter) -> Result<(), Stop> {
         let (order, sorted) = (&mut self.order[..points.len()], &mut self.points[..points.len()]);

@@ -1,7 +1,7 @@
 //! Triangle meshes in the caller's memory, validated.
 
 use super::Aabb;
-use crate::geometry::{MAX_COORDINATE, Point};
+use crate::geometry::{MAX_COORDINATE, Point, Pose};
 
 /// A checked view of a triangle mesh: corners counter-clockwise seen from outside, in metres.
 ///
@@ -12,6 +12,8 @@ pub struct Mesh<'a> {
     vertices: &'a [Point],
     triangles: &'a [[u32; 3]],
     viewpoints: &'a [Point],
+    /// From the coordinates of the vertices to those of [`corners`](Self::corners).
+    frame: Pose,
 }
 
 /// Why a mesh cannot be used.
@@ -116,7 +118,8 @@ impl<'a> Mesh<'a> {
                 return Err(MeshError::Index { triangle, vertex, vertices: vertices.len() });
             }
         }
-        let mesh = Self { vertices: bytemuck::cast_slice(vertices), triangles, viewpoints: &[] };
+        let vertices = bytemuck::cast_slice(vertices);
+        let mesh = Self { vertices, triangles, viewpoints: &[], frame: Pose::identity() };
         if mesh.solid_triangles().next().is_none() {
             return Err(MeshError::AllDegenerate { triangles: triangles.len() });
         }
@@ -148,9 +151,14 @@ impl<'a> Mesh<'a> {
         self.triangles
     }
 
+    /// The same with the corners of its triangles in another frame, to which `frame` leads; vertices and viewpoints stay.
+    pub(crate) fn in_frame(self, frame: &Pose) -> Self {
+        Self { frame: *frame, ..self }
+    }
+
     /// Corners of triangle `index`, degenerate or not.
     pub(crate) fn corners(&self, index: usize) -> [Point; 3] {
-        self.triangles[index].map(|v| self.vertices[v as usize])
+        self.triangles[index].map(|v| self.frame * self.vertices[v as usize])
     }
 
     /// The indices of the triangles that have an area, in order.
@@ -158,6 +166,18 @@ impl<'a> Mesh<'a> {
         let mesh = *self;
         (0..self.triangles.len() as u32)
             .filter(move |&t| super::triangle::has_area(&mesh.corners(t as usize)))
+    }
+
+    /// Points of the surface with weights, m², that give the integral of every polynomial of up to second order over it: the middles of the
+    /// edges of each triangle, each with a third of its area.
+    pub(crate) fn quadrature(&self) -> impl Iterator<Item = (Point, f32)> + use<'a> {
+        let mesh = *self;
+        (0..self.triangles.len()).flat_map(move |index| {
+            let corners = mesh.corners(index);
+            let weight = super::triangle::scaled_normal(&corners).norm() / 6.0;
+            let [a, b, c] = corners;
+            [(a, b), (b, c), (c, a)].map(|(from, to)| (nalgebra::center(&from, &to), weight))
+        })
     }
 
     /// The box around all triangles.

@@ -119,6 +119,12 @@ impl Symmetries {
         &self.slots[..self.count]
     }
 
+    /// The same about rotated axes.
+    pub(crate) fn rotated(self, rotation: &UnitQuaternion<f32>) -> Self {
+        let slots = self.slots.map(|Symmetry { axis, fold }| Symmetry { axis: rotation * axis, fold });
+        Self { slots, ..self }
+    }
+
     /// Finds symmetries about the principal axes of the object's inertia and, of one that has more than half turns about one
     /// axis alone, half turns across it. A cube has no principal axes of its own; it shows its symmetry only where they happen
     /// to be along its edges. `points` are on the surface and cover it evenly.

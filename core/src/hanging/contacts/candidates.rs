@@ -9,7 +9,7 @@ use crate::geometry::{Point, Pose, Vector, any_perpendicular, unit_or};
 use crate::hanging::request::Request;
 use crate::hanging::settling::CLEARANCE;
 use crate::hanging::settling::wishes::is_clear_of_scene;
-use crate::mechanics::{Body, Support, first_within};
+use crate::mechanics::{Body, Frames, Support, first_within};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
@@ -98,7 +98,7 @@ impl<'a> CandidateSearch<'a> {
         let ways = arena.slice::<Way>(2 * contacts.len())?;
         for (k, way) in ways.iter_mut().enumerate() {
             let contact = &contacts[k / 2];
-            if !request.by.contains(&contact.position) {
+            if !request.by.contains(&Frames::of(scene).on_object(&contact.position)) {
                 way.score = f32::NEG_INFINITY;
                 continue;
             }
@@ -159,7 +159,7 @@ impl<'a> CandidateSearch<'a> {
             self.ways[index].visited += 1;
             if let Some(pose) = self.lay(index, place, meter)? {
                 self.counts.clear += 1;
-                if !is_clear_of_scene(self.scene.0, self.request, &pose, CLEARANCE, meter)? {
+                if !is_clear_of_scene(self.scene, self.request, &pose, CLEARANCE, meter)? {
                     self.in_scene += 1;
                     continue;
                 }

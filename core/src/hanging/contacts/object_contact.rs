@@ -2,7 +2,7 @@
 
 use super::constants::*;
 use super::counts::ObjectCounts;
-use crate::geometry::{Point, Vector, rotate_about, unit_or};
+use crate::geometry::{Point, Pose, Vector, rotate_about, unit_or};
 use crate::hanging::opening;
 use crate::hanging::samples::ObjectSamples;
 use crate::monitor::{Meter, Stop};
@@ -32,6 +32,17 @@ pub struct ObjectContact {
 }
 
 impl ObjectContact {
+    /// The same in other coordinates, to which `motion` leads.
+    pub(in crate::hanging) fn moved(&self, motion: &Pose) -> Self {
+        let Self { position, normal, bar_direction, .. } = *self;
+        Self {
+            position: motion * position,
+            normal: motion * normal,
+            bar_direction: motion * bar_direction,
+            ..*self
+        }
+    }
+
     /// Whether the contact is in a loop, through which a bar of useful length passes.
     pub(super) fn is_in_loop(&self) -> bool {
         self.encircled > 0 && !self.is_enclosed()

@@ -6,12 +6,13 @@ use super::counts::Counts;
 use super::object_contact::ObjectContact;
 use super::support_contact::{self, SupportContact};
 use crate::best::Best;
+use crate::geometry::Point;
 use crate::hanging::error::PredictError;
 use crate::hanging::found::Found;
 use crate::hanging::pose::HangingPose;
 use crate::hanging::scene::Scene;
 use crate::hanging::settling::Settling;
-use crate::mechanics::Kind;
+use crate::mechanics::{Frames, Kind};
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop};
 
@@ -34,20 +35,22 @@ pub(in crate::hanging) fn search(
     let mut arena = arena;
     let mut settling = Settling::new(scene, &mut arena)?;
     let (bodies, up, request) = ((settling.body, settling.support), scene.params.up(), scene.request);
+    let frames = Frames::of(bodies);
     let stopped = |stop| Found { poses: 0, counts, settling: Default::default(), stop: Some(stop) };
     let places = match request.on.is_limited() {
         false => places,
         true => {
             let slots = arena.slice::<SupportContact>(MAX_SUPPORT_CONTACTS)?;
-            match support_contact::find_within(bodies.1, &request.on, &up, slots, meter) {
+            let is_in = |point: &Point| request.on.contains(&frames.on_supporter(point));
+            match support_contact::find_within(bodies.1, is_in, &up, slots, meter) {
                 Ok(count) => &slots[..count],
                 Err(stop) => return Ok(stopped(stop)),
             }
         }
     };
     let is_on = !request.on.is_limited() || !places.is_empty();
-    let is_by =
-        !request.by.is_limited() || contacts.iter().any(|contact| request.by.contains(&contact.position));
+    let is_by = |contact: &ObjectContact| request.by.contains(&frames.on_object(&contact.position));
+    let is_by = !request.by.is_limited() || contacts.iter().any(is_by);
     settling.counts.outside += usize::from(!is_on || !is_by);
     let mut candidates = CandidateSearch::new(bodies, contacts, request, places, up, &mut arena)?;
     let mut best = Best::new(poses);

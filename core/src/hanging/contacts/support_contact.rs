@@ -2,8 +2,7 @@
 
 use super::constants::*;
 use super::counts::SupporterCounts;
-use crate::geometry::{Point, PointTree, Vector, principal_direction};
-use crate::hanging::region::Region;
+use crate::geometry::{Point, PointTree, Pose, Vector, principal_direction};
 use crate::mechanics::Support;
 use crate::monitor::{Meter, Stop};
 use bytemuck::{Pod, Zeroable};
@@ -19,6 +18,14 @@ pub struct SupportContact {
     pub normal: Vector,
     /// Unit vector along the direction of greatest extent of the supporter around the point; its sign has no meaning.
     pub bar_direction: Vector,
+}
+
+impl SupportContact {
+    /// The same in other coordinates, to which `motion` leads.
+    pub(in crate::hanging) fn moved(&self, motion: &Pose) -> Self {
+        let Self { position, normal, bar_direction } = *self;
+        Self { position: motion * position, normal: motion * normal, bar_direction: motion * bar_direction }
+    }
 }
 
 /// The search on one supporter.
@@ -56,18 +63,18 @@ impl Search<'_> {
     }
 }
 
-/// Fills `slots` with contacts of a supporter in a region, closer together than those of the whole supporter, and returns their
+/// Fills `slots` with contacts of a supporter at points that are in a region, closer together than those of the whole supporter, and returns their
 /// number.
 pub(super) fn find_within(
     support: &Support,
-    region: &Region,
+    is_in: impl Fn(&Point) -> bool + Copy,
     up: &Vector,
     slots: &mut [SupportContact],
     meter: &mut Meter,
 ) -> Result<usize, Stop> {
     let facing_up = |least| {
         let surface = support.hangable_surface();
-        surface.filter(move |(point, normal)| normal.dot(up) >= least && region.contains(point))
+        surface.filter(move |(point, normal): &(&Point, &Vector)| normal.dot(up) >= least && is_in(point))
     };
     spread(&support.tree, facing_up, slots, meter)
 }

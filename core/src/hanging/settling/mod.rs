@@ -16,8 +16,8 @@ use super::watch::Watch;
 use crate::best::Best;
 use crate::geometry::{Pose, Symmetry};
 use crate::mechanics::{
-    Body, Contact, Fate, Settings, Settled, Sleep, Support, Unseen, carrying_contacts, comes_free, kind_of,
-    lever, margin, push_off_surface, release_pose, settle, unseen,
+    Body, Contact, Fate, Frames, Settings, Settled, Sleep, Support, Unseen, carrying_contacts, comes_free,
+    kind_of, lever, margin, push_off_surface, release_pose, settle, unseen,
 };
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop};
@@ -65,7 +65,7 @@ pub struct SettlingCounts {
 pub(super) struct Settling<'a> {
     pub(super) body: &'a Body<'a>,
     pub(super) support: &'a Support<'a>,
-    /// Turns of the object that make no other pose.
+    /// Turns of the object that make no other pose, about axes in the caller's object coordinates.
     pub(super) symmetries: &'a [Symmetry],
     pub(super) request: &'a Request<'a>,
     pub(super) params: &'a Params,
@@ -174,7 +174,13 @@ impl<'a> Settling<'a> {
             meter.progress(index as f32 / poses.len() as f32);
             let pose = poses[index];
             let mut firm = Best::filled(&mut poses[..=index], left);
-            let released = match is_clear_of_scene(self.body, self.request, &pose.pose, CLEARANCE, meter) {
+            let released = match is_clear_of_scene(
+                (self.body, self.support),
+                self.request,
+                &pose.pose,
+                CLEARANCE,
+                meter,
+            ) {
                 Ok(true) => self.release(&pose, &mut firm, meter).map(|_| ()),
                 Ok(false) => {
                     self.counts.in_scene += 1;
@@ -212,7 +218,7 @@ impl<'a> Settling<'a> {
             Fate::Moves => self.counts.moving += 1,
         }
         if let Some(Watch(watch)) = self.request.watch {
-            watch(&off_surface, settled.fate);
+            watch(&Frames::of(scene).outwards(&off_surface), settled.fate);
         }
         if settled.fate != Fate::Rests {
             return Ok(false);
@@ -342,7 +348,7 @@ impl<'a> Settling<'a> {
 
     /// Whether a pose is closer to a rest pose than a distance, whichever way the object is turned by its symmetries.
     fn is_like(&self, rest: &Rest, pose: &Pose, distance: &Distance) -> bool {
-        rest.is_like(pose, &self.body.centre, self.symmetries, distance)
+        rest.is_like(pose, self.body, self.symmetries, distance)
     }
 
     fn settle(&mut self, start: &Pose, meter: &mut Meter) -> Result<Settled, Stop> {

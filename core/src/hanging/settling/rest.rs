@@ -1,9 +1,9 @@
 //! Where a released object comes to rest, and how firmly.
 
 use super::probability;
-use crate::geometry::{Point, Pose, Symmetry, least_angle};
+use crate::geometry::{Pose, Symmetry, Vector, least_angle};
 use crate::hanging::request::Distance;
-use crate::mechanics::{Contact, Kind, MAX_CONTACTS, Margin, Unseen};
+use crate::mechanics::{Body, Contact, Frames, Kind, MAX_CONTACTS, Margin, Unseen};
 
 /// How far the object may be from its release pose when it is let go, in any direction: it still touches nothing, and comes to
 /// rest as it would have. An error of the position and one of the rotation add up: half of either is fine together.
@@ -108,17 +108,33 @@ impl Rest {
         &self.contacts[..self.contact_count as usize]
     }
 
-    /// Whether another pose is closer to this rest pose than a distance, after turns of the object that its symmetries allow;
-    /// `centre` is the object's centre of mass, which these turns leave in place.
+    /// The same in the caller's coordinates.
+    pub(in crate::hanging) fn outwards(mut self, frames: &Frames) -> Self {
+        let to_object = frames.object.rotation.inverse();
+        let to_supporter = frames.supporter.rotation.inverse();
+        self.pose = frames.outwards(&self.pose);
+        for contact in self.contacts.iter_mut().take(self.contact_count as usize) {
+            contact.position = frames.on_supporter(&contact.position);
+            contact.normal = to_supporter * contact.normal;
+        }
+        let Unseen { object_view, supporter_view, .. } = self.unseen;
+        self.unseen.object_view = (to_object * Vector::from(object_view)).into();
+        self.unseen.supporter_view = (to_supporter * Vector::from(supporter_view)).into();
+        self
+    }
+
+    /// Whether another pose is closer to this rest pose than a distance, after turns of the object that its symmetries, about axes in the
+    /// caller's coordinates, allow. They leave the centre of mass in place.
     pub(super) fn is_like(
         &self,
         other: &Pose,
-        centre: &Point,
+        body: &Body,
         symmetries: &[Symmetry],
         distance: &Distance,
     ) -> bool {
-        let apart = self.pose * centre - other * centre;
-        let rotation = self.pose.rotation.inverse() * other.rotation;
+        let apart = self.pose * body.centre - other * body.centre;
+        let frame = body.frame.rotation;
+        let rotation = frame.inverse() * self.pose.rotation.inverse() * other.rotation * frame;
         apart.norm() < distance.position && least_angle(symmetries, &rotation) < distance.rotation
     }
 }

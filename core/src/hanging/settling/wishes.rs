@@ -3,7 +3,9 @@
 use super::{CLEARANCE, Settling};
 use crate::geometry::{Pose, Vector, any_perpendicular, rotate_about};
 use crate::hanging::request::{Approach, Request};
-use crate::mechanics::{Body, Contact, Kind, first_within, is_clear_of_points, is_clear_of_surface};
+use crate::mechanics::{
+    Body, Contact, Frames, Kind, Support, first_within, is_clear_of_points, is_clear_of_surface,
+};
 use crate::monitor::{Meter, Stop};
 use nalgebra::Translation3;
 
@@ -14,16 +16,19 @@ const APPROACH_STEP: f32 = 0.002;
 /// Directions tried on either of two circles in the cone of an approach, beside its axis.
 const AROUND: usize = 8;
 
-/// Whether the object at `pose` is at least `clearance` metres away from the scene and from what hangs already.
+/// Whether the object at `pose`, from frame to frame, is at least `clearance` metres away from the scene and from what hangs already.
 pub(in crate::hanging) fn is_clear_of_scene(
-    body: &Body,
+    (body, support): (&Body, &Support),
     request: &Request,
     pose: &Pose,
     clearance: f32,
     meter: &mut Meter,
 ) -> Result<bool, Stop> {
+    // Scene and poses are in the caller's supporter coordinates.
+    let pose = &(support.frame.inverse() * pose);
     for hung in request.hung {
-        if !is_clear_of_surface(body, pose, (hung.object.surface(), &hung.pose), clearance, meter)? {
+        let other_pose = hung.pose * hung.object.frame().inverse();
+        if !is_clear_of_surface(body, pose, (hung.object.surface(), &other_pose), clearance, meter)? {
             return Ok(false);
         }
     }
@@ -39,9 +44,9 @@ impl Settling<'_> {
         kind: Kind,
         meter: &mut Meter,
     ) -> Result<bool, Stop> {
-        let (body, request) = (self.body, self.request);
+        let (bodies, request) = ((self.body, self.support), self.request);
         let is_clear =
-            |pose: &Pose, meter: &mut Meter| is_clear_of_scene(body, request, pose, CLEARANCE, meter);
+            |pose: &Pose, meter: &mut Meter| is_clear_of_scene(bodies, request, pose, CLEARANCE, meter);
         if !self.hangs_in_region(rest, contacts) {
             self.counts.outside += 1;
         } else if !self.request.allow.contains(kind) {
@@ -60,8 +65,10 @@ impl Settling<'_> {
         if !request.on.is_limited() && !request.by.is_limited() {
             return true;
         }
+        let frames = Frames::of((self.body, self.support));
         let is_inside = |contact: &&Contact| {
-            request.on.contains(&contact.position) && request.by.contains(&(to_object * contact.position))
+            request.on.contains(&frames.on_supporter(&contact.position))
+                && request.by.contains(&frames.on_object(&(to_object * contact.position)))
         };
         let weight =
             |contacts: &mut dyn Iterator<Item = &Contact>| contacts.map(|contact| contact.force).sum::<f32>();
@@ -72,7 +79,7 @@ impl Settling<'_> {
     /// Whether a straight way in the direction that was asked for leads to the release pose without a collision.
     pub(super) fn has_approach(&self, release: &Pose, meter: &mut Meter) -> Result<bool, Stop> {
         let Some(Approach { direction, angle, length }) = self.request.approach else { return Ok(true) };
-        let axis = Vector::from(direction).normalize();
+        let axis = self.support.frame * Vector::from(direction).normalize();
         let first = any_perpendicular(axis);
         let ways = core::iter::once(axis).chain([0.5 * angle, angle].into_iter().flat_map(|angle| {
             let (sin, cos) = libm::sincosf(angle);
@@ -100,7 +107,7 @@ impl Settling<'_> {
             let back = way * -(length * step as f32 / steps as f32);
             let pose = Translation3::from(back) * release;
             let is_free = first_within((self.body, self.support), &pose, 0.0, meter)?.is_none()
-                && is_clear_of_scene(self.body, self.request, &pose, 0.0, meter)?;
+                && is_clear_of_scene((self.body, self.support), self.request, &pose, 0.0, meter)?;
             if !is_free {
                 return Ok(false);
             }

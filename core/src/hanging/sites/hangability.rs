@@ -2,7 +2,7 @@
 
 use super::clusters::Clusters;
 use crate::best::Best;
-use crate::geometry::{Point, PointTree, Vector, any_perpendicular, rotate_about, unit_or};
+use crate::geometry::{Point, PointTree, Pose, Vector, any_perpendicular, rotate_about, unit_or};
 use crate::hanging::samples::ObjectSamples;
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop, Unfinished};
@@ -30,6 +30,19 @@ pub struct HangingSite {
     pub encircled_below: f32,
     /// `|P_h|`: samples in the cluster of contact points.
     pub contact_points: u32,
+}
+
+impl HangingSite {
+    /// The same in other coordinates, to which `motion` leads.
+    pub(in crate::hanging) fn moved(&self, motion: &Pose) -> Self {
+        let Self { position, hanging_direction, contact_point, .. } = *self;
+        Self {
+            position: motion * position,
+            hanging_direction: motion * hanging_direction,
+            contact_point: motion * contact_point,
+            ..*self
+        }
+    }
 }
 
 /// How much was left on the object after each step.

@@ -123,14 +123,13 @@ pub(super) fn find_on_supporter(
     meter: &mut Meter,
     mut scratch: Arena,
 ) -> Result<(SupporterCounts, Option<Stop>), Unfinished> {
-    let normals = scratch.slice::<Vector>(cloud.points.len())?;
+    let normals = scratch.slice::<Vector>(cloud.normals.len())?;
     // A point without a normal does not face up, and is no place to hang on.
-    let places = cloud.normals.iter().zip(cloud.is_excluded).zip(cloud.tree.order());
-    for ((normal, _), &index) in places.filter(|((_, excluded), _)| **excluded == 0) {
-        normals[index as usize] = *normal;
+    let given = cloud.normals.iter().zip(cloud.is_excluded);
+    for (normal, (given, _)) in normals.iter_mut().zip(given).filter(|(_, (_, excluded))| **excluded == 0) {
+        *normal = *given;
     }
-    Supportability { tree: cloud.tree, points: cloud.points, normals, params: cloud.params }
-        .find(slots, meter, scratch)
+    Supportability { tree: cloud.tree, normals, params: cloud.params }.find(slots, meter, scratch)
 }
 
 /// Matches every hanging site with every support site and writes the best poses to `poses`; with [`Params::settle`] those of

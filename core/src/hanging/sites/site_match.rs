@@ -7,9 +7,9 @@ use super::cost::Cost;
 pub struct SiteMatch {
     /// What it costs.
     pub cost: Cost,
-    /// Index among [`ObjectPlaces::sites`](crate::hanging::ObjectPlaces::sites).
+    /// Index among [`Object::sites`](crate::hanging::Object::sites).
     pub object_site: u32,
-    /// Index among [`SupporterPlaces::sites`](crate::hanging::SupporterPlaces::sites).
+    /// Index among [`Supporter::sites`](crate::hanging::Supporter::sites).
     pub support_site: u32,
     /// Whether the object's hanging direction is laid against the supporter's instead of along it.
     pub is_reversed: bool,

@@ -2,7 +2,9 @@
 
 use super::clusters::Clusters;
 use crate::best::Best;
-use crate::geometry::{Point, PointTree, Vector, any_perpendicular, hull, linked_cluster, rotate_about};
+use crate::geometry::{
+    Point, PointTree, Pose, Vector, any_perpendicular, hull, linked_cluster, rotate_about,
+};
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop, Unfinished};
 use crate::params::Params;
@@ -24,6 +26,19 @@ pub struct SupportSite {
     /// `d_1`, `d_2`: distances from the position to the convex hull of the supporter along the hanging direction
     /// and against it, metres.
     pub boundary_distances: [f32; 2],
+}
+
+impl SupportSite {
+    /// The same in other coordinates, to which `motion` leads.
+    pub(in crate::hanging) fn moved(&self, motion: &Pose) -> Self {
+        let Self { position, hanging_direction, contact_point, .. } = *self;
+        Self {
+            position: motion * position,
+            hanging_direction: motion * hanging_direction,
+            contact_point: motion * contact_point,
+            ..*self
+        }
+    }
 }
 
 /// How much was left on the supporter after each step.
@@ -48,8 +63,7 @@ pub(super) const fn scratch_bytes(points: usize) -> usize {
 /// The input of the search.
 pub(super) struct Supportability<'a> {
     pub(super) tree: &'a PointTree<'a>,
-    /// The points in the order in which they were given, and their normals.
-    pub(super) points: &'a [Point],
+    /// In tree order.
     pub(super) normals: &'a [Vector],
     pub(super) params: &'a Params,
 }
@@ -65,9 +79,9 @@ impl Supportability<'_> {
     ) -> Result<(SupporterCounts, Option<Stop>), Unfinished> {
         let up = self.params.up();
         let mut counts = SupporterCounts::default();
-        let contacts = scratch.slice::<Point>(self.points.len())?;
+        let contacts = scratch.slice::<Point>(self.tree.points().len())?;
         let faces_up = |normal: &Vector| normal.dot(&up) > self.params.supporter_contact_cosine;
-        let selected = self.points.iter().zip(self.normals).filter(|(_, normal)| faces_up(normal));
+        let selected = self.tree.points().iter().zip(self.normals).filter(|(_, normal)| faces_up(normal));
         for (slot, (point, _)) in contacts.iter_mut().zip(selected) {
             *slot = *point;
             counts.contact_points += 1;
@@ -130,7 +144,7 @@ impl Supportability<'_> {
         if let Some(site) = &mut best {
             meter.distance_queries(2)?;
             site.boundary_distances = [site.hanging_direction, -site.hanging_direction]
-                .map(|direction| hull::exit_distance(self.points, site.position, direction));
+                .map(|direction| hull::exit_distance(self.tree.points(), site.position, direction));
         }
         Ok(best)
     }
@@ -162,7 +176,7 @@ impl Supportability<'_> {
                 look_at(&self.tree.points()[neighbour.index as usize]);
             });
         } else {
-            self.points.iter().for_each(look_at);
+            self.tree.points().iter().for_each(look_at);
         }
         let members = linked_cluster(&mut slice[..count], link, reach)?;
         if members < 2 {

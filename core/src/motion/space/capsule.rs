@@ -4,37 +4,12 @@ use super::touch::{Collector, Touch};
 use crate::geometry::{DistanceField, Point, PointTree, Pose, Vector, unit_or};
 use crate::mechanics::Support;
 use crate::motion::failure::{Mover, Obstacle};
-use crate::motion::gripper::{Capsule, Gripper};
+use crate::motion::gripper::Finger;
 
 /// Most halvings of a segment against a distance field.
 const MAX_HALVINGS: usize = 16;
 /// Half length of a piece of a segment that is not halved any more, metres.
 const SMALLEST_PIECE: f32 = 0.001;
-
-impl Capsule {
-    /// The ends of the segment in object coordinates, with the gripper open by a share of 0 to 1.
-    pub(super) fn ends(&self, opening: f32) -> [Point; 2] {
-        let shift = Vector::from(self.opening) * opening;
-        [Point::from(self.from) + shift, Point::from(self.to) + shift]
-    }
-}
-
-impl Gripper<'_> {
-    /// Centre of its parts, closed, in object coordinates.
-    pub(in crate::motion) fn centre(&self) -> Point {
-        let ends = || self.parts.iter().flat_map(|part| part.ends(0.0));
-        let sum: Vector = ends().map(|end| end.coords).sum();
-        Point::from(sum / ends().count().max(1) as f32)
-    }
-
-    /// Distance from a point to the farthest point of it, metres.
-    pub(in crate::motion) fn reach(&self, from: &Point, opening: f32) -> f32 {
-        let reach = |part: &Capsule| {
-            part.ends(opening).iter().map(|end| (end - from).norm()).fold(0.0, f32::max) + part.radius
-        };
-        self.parts.iter().map(reach).fold(0.0, f32::max)
-    }
-}
 
 /// One part of a gripper at a pose, in supporter coordinates.
 pub(super) struct CapsuleQuery<'q, C> {
@@ -48,9 +23,9 @@ pub(super) struct CapsuleQuery<'q, C> {
 }
 
 impl<'q, C: Collector> CapsuleQuery<'q, C> {
-    pub(super) fn new((index, part): (usize, &Capsule), opening: f32, pose: &Pose, found: &'q mut C) -> Self {
-        let [from, to] = part.ends(opening).map(|end| pose * end);
-        Self { from, to, radius: part.radius, mover: Mover::Gripper(index), found, queries: 0 }
+    pub(super) fn new((index, finger): (usize, Finger), pose: &Pose, found: &'q mut C) -> Self {
+        let [from, to] = finger.ends.map(|end| pose * end);
+        Self { from, to, radius: finger.radius, mover: Mover::Gripper(index), found, queries: 0 }
     }
 
     /// Vector from a point to the nearest point of the segment.

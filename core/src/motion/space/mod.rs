@@ -18,13 +18,13 @@ use track::Track;
 
 use super::exits::box_around;
 use super::failure::Obstacle;
-use super::gripper::Gripper;
+use super::gripper::{Finger, Hand};
 use super::path::MAX_CLEARANCE;
 use super::placement::{Leg, Placement};
 use super::task::Task;
 use crate::geometry::{Aabb, Neighbour, Point, PointTree, PointTreeSlots, Pose};
 use crate::hanging::Hung;
-use crate::mechanics::{Body, Support};
+use crate::mechanics::{Body, Frames, Support};
 use crate::memory::{Arena, OutOfMemory, array_bytes};
 use crate::monitor::{Meter, Stop, Unfinished};
 
@@ -32,22 +32,23 @@ use crate::monitor::{Meter, Stop, Unfinished};
 #[derive(Clone, Copy)]
 pub(super) struct Moving<'a> {
     pub(super) body: Option<Body<'a>>,
-    pub(super) gripper: Option<Gripper<'a>>,
+    pub(super) gripper: Option<Hand<'a>>,
     /// How far the gripper is open, 0 to 1.
     pub(super) opening: f32,
-    /// A point in object coordinates, about which `reach` is taken.
+    /// A point in the frame of the object, about which `reach` is taken.
     pub(super) centre: Point,
     /// Distance from the centre to the farthest point, metres.
     pub(super) reach: f32,
 }
 
-/// Everything that stands still, in supporter coordinates.
+/// Everything that stands still, in the frame of the supporter.
 #[derive(Clone, Copy)]
 pub(super) struct Obstacles<'a> {
     pub(super) support: &'a Support<'a>,
     scene: Option<PointTree<'a>>,
     /// Radius of the points of the scene, metres, so that nothing slips through between them.
     scene_radius: f32,
+    /// With poses in the caller's coordinates: see [`pose_of`](Self::pose_of).
     hung: &'a [Hung<'a>],
     /// The object at its rest pose, an obstacle for the gripper that has let it go.
     rested: Option<(Body<'a>, Pose)>,
@@ -88,17 +89,23 @@ const MAX_SCENE_RADIUS: f32 = 0.01;
 
 impl<'a> Moving<'a> {
     /// The object, in the gripper if there is one.
-    pub(super) fn held(body: Body<'a>, gripper: Option<Gripper<'a>>) -> Self {
+    pub(super) fn held(body: Body<'a>, gripper: Option<Hand<'a>>) -> Self {
         let of_gripper = gripper.map_or(0.0, |gripper| gripper.reach(&body.centre, 0.0));
         let (centre, reach) = (body.centre, body.reach.max(of_gripper));
         Self { body: Some(body), gripper, opening: 0.0, centre, reach }
     }
 
     /// The opened gripper alone.
-    pub(super) fn gripper(gripper: Gripper<'a>) -> Self {
+    pub(super) fn gripper(gripper: Hand<'a>) -> Self {
         let centre = gripper.centre();
         let reach = gripper.reach(&centre, 0.0).max(gripper.reach(&centre, 1.0));
         Self { body: None, gripper: Some(gripper), opening: 1.0, centre, reach }
+    }
+
+    /// The parts of the gripper, if there is one.
+    fn fingers(&self) -> impl Iterator<Item = Finger> + use<'a> {
+        let opening = self.opening;
+        self.gripper.into_iter().flat_map(move |hand| hand.fingers(opening))
     }
 }
 
@@ -127,7 +134,7 @@ impl<'a> Obstacles<'a> {
         let mut count = 0;
         for (point, name) in scene.iter().zip(0..) {
             meter.check_at(name as usize)?;
-            let point = Point::from(*point);
+            let point = support.frame * Point::from(*point);
             if region.contains(&point) {
                 (points[count], names[count]) = (point, name);
                 count += 1;
@@ -145,6 +152,11 @@ impl<'a> Obstacles<'a> {
             scene.as_ref().map_or(0.0, |scene| (SPACING_RATIO * spacing_of(scene)).min(MAX_SCENE_RADIUS));
         let aabb = box_around(&task.supporter.points().aabb(), [], support.reach);
         Ok(Self { support, scene, scene_radius, hung: task.request.hung, rested: None, aabb })
+    }
+
+    /// Pose of an object that hangs already, from its frame to that of the supporter.
+    fn pose_of(&self, hung: &Hung) -> Pose {
+        Frames { object: *hung.object.frame(), supporter: self.support.frame }.inwards(&hung.pose)
     }
 
     /// The same with the object at its rest pose.
@@ -207,11 +219,11 @@ impl<'a> Space<'a> {
     }
 
     /// Makes the points of the scene smaller where they would be in the way at poses at which they are not.
-    pub(super) fn make_room(&mut self, free: &[Pose]) {
+    pub(super) fn make_room(&mut self, free: impl IntoIterator<Item = Pose>) {
         let (Some(body), Some(scene)) = (&self.moving.body, &self.obstacles.scene) else { return };
         for pose in free {
             let mut nearest = Nearest::within(2.0 * self.obstacles.scene_radius);
-            ObjectQuery::new(body, pose, &mut nearest, None).scene(scene, 0.0);
+            ObjectQuery::new(body, &pose, &mut nearest, None).scene(scene, 0.0);
             self.obstacles.scene_radius = (0.5 * nearest.distance).max(0.0);
         }
     }
@@ -287,7 +299,7 @@ impl<'a> Space<'a> {
             if !self.track.is_awake(1 + index, errors) {
                 return false;
             }
-            let (between, other) = (to_object * hung.pose, hung.object.surface());
+            let (between, other) = (to_object * self.obstacles.pose_of(hung), hung.object.surface());
             body.surface.is_crossed_by(other, &between, &mut queries)
                 || other.is_crossed_by(body.surface, &between.inverse(), &mut queries)
         });
@@ -297,7 +309,9 @@ impl<'a> Space<'a> {
 
     /// How far the object is inside the workspace, metres; negative if a part of it is outside, infinite without a workspace.
     pub(super) fn room_at(&self, at: &Placement) -> f32 {
-        self.workspace.map_or(f32::INFINITY, |workspace| workspace.room_at(&at.pose(&self.moving.centre)))
+        let Some(workspace) = &self.workspace else { return f32::INFINITY };
+        let to_caller = self.obstacles.support.frame.inverse();
+        workspace.room_at(&(to_caller * at.pose(&self.moving.centre)))
     }
 
     /// Whether there is nothing but the supporter.
@@ -351,8 +365,8 @@ impl<'a> Space<'a> {
             let queries = query.queries.max(1);
             meter.distance_queries(queries)?;
         }
-        for part in moving.gripper.iter().flat_map(|gripper| gripper.parts).enumerate() {
-            let mut query = CapsuleQuery::new(part, moving.opening, pose, found);
+        for part in moving.fingers().enumerate() {
+            let mut query = CapsuleQuery::new(part, pose, found);
             query.supporter(obstacles.support);
             meter.distance_queries(query.queries.max(1))?;
         }
@@ -378,20 +392,20 @@ impl<'a> Space<'a> {
             }
             for (index, hung) in obstacles.hung.iter().enumerate() {
                 query.unless_asleep(track, 1 + index, |query| {
-                    query.surface(hung.object.surface(), &hung.pose, Obstacle::Hung(index));
+                    query.surface(hung.object.surface(), &obstacles.pose_of(hung), Obstacle::Hung(index));
                 });
             }
             let queries = query.queries;
             meter.distance_queries(queries)?;
         }
-        for part in moving.gripper.iter().flat_map(|gripper| gripper.parts).enumerate() {
-            let mut query = CapsuleQuery::new(part, moving.opening, pose, found);
+        for part in moving.fingers().enumerate() {
+            let mut query = CapsuleQuery::new(part, pose, found);
             if let Some(scene) = &obstacles.scene {
                 query.scene(scene, obstacles.scene_radius);
             }
             for (index, hung) in obstacles.hung.iter().enumerate() {
                 if let Some(field) = hung.object.distance_field() {
-                    query.field(field, &hung.pose, Obstacle::Hung(index));
+                    query.field(field, &obstacles.pose_of(hung), Obstacle::Hung(index));
                 }
             }
             if let Some((body, pose)) = &obstacles.rested {

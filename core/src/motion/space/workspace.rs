@@ -2,7 +2,7 @@
 
 use crate::geometry::{Aabb, Point, Pose, Vector};
 
-/// A box in supporter coordinates, and the corners of the object's own box, in object coordinates.
+/// A box in the caller's supporter coordinates, and the corners of the object's own box, in the frame of the object.
 #[derive(Clone, Copy)]
 pub(in crate::motion) struct Workspace {
     aabb: Aabb,
@@ -23,7 +23,7 @@ impl Workspace {
         Self { aabb, corners: core::array::from_fn(corner) }
     }
 
-    /// How far the object is inside the box at a pose, metres; negative if a part of it is outside.
+    /// How far the object is inside the box at a pose, from its frame to the caller's supporter coordinates, metres; negative if a part of it is outside.
     pub(super) fn room_at(&self, pose: &Pose) -> f32 {
         let room = |corner: &Point| {
             let at = pose * corner;

@@ -8,7 +8,7 @@ pub(crate) mod spacing;
 mod strays;
 mod surroundings;
 
-use crate::geometry::{Point, PointTreeSlots, Vector};
+use crate::geometry::{Point, PointTreeSlots, Pose, Vector};
 use crate::memory::{Arena, array_bytes, larger};
 use crate::monitor::{Meter, Unfinished};
 use merge::Kept;
@@ -52,9 +52,9 @@ pub struct CleaningCounts {
 }
 
 /// Merges and drops points, unless the cloud is to be taken as it is, and fills `slots` with those that are left, at least
-/// one, named by their indices in `points`. `normals` are of unit length, or zero where unknown.
+/// one, moved by `frame` and named by their indices in `points`. `normals` are of unit length in that frame, or zero where unknown.
 pub(crate) fn clean<'s>(
-    points: &[Point],
+    (points, frame): (&[Point], &Pose),
     normals: &[Vector],
     is_taken_as_it_is: bool,
     slots: &mut PointTreeSlots,
@@ -64,11 +64,18 @@ pub(crate) fn clean<'s>(
     let (normals_kept, spacings) = (arena.unset::<Vector>(points.len())?, arena.slice::<f32>(points.len())?);
     let (is_excluded, is_guessed) = (arena.unset::<u8>(points.len())?, arena.slice::<u8>(points.len())?);
     let mut scratch = arena.scratch();
+    let moved = slots.lend(points.len());
+    for (step, (to, from)) in moved.iter_mut().zip(points).enumerate() {
+        meter.check_at(step)?;
+        *to = frame * from;
+    }
+    let points = &*moved;
     let mut kept = match is_taken_as_it_is {
         true => Kept::all(points, normals, &mut scratch)?,
         false => merge::merge(points, normals, &mut scratch, meter)?,
     };
-    let mut counts = CleaningCounts { merged: points.len() - kept.points.len(), ..CleaningCounts::default() };
+    let merged = points.len() - kept.points.len();
+    let mut counts = CleaningCounts { merged, ..CleaningCounts::default() };
     slots.fill(kept.points, meter)?;
     if !is_taken_as_it_is {
         let spacings = &mut spacings[..kept.points.len()];

@@ -13,7 +13,9 @@ fn cleaned(points: &[Point], normals: &[Vector]) -> (Vec<u32>, Vec<u32>, Cleanin
     let mut arena = Arena::new(&mut memory, needed).unwrap();
     let mut slots = PointTreeSlots::new(n, &mut arena).unwrap();
     let mut scratch = arena.scratch();
-    let cleaned = clean(points, normals, false, &mut slots, &mut scratch, &Meter::unwatched()).unwrap();
+    let cleaned =
+        clean((points, &Pose::identity()), normals, false, &mut slots, &mut scratch, &Meter::unwatched())
+            .unwrap();
     let order = slots.tree().order().to_vec();
     let on_planes = order.iter().zip(cleaned.is_excluded.iter()).filter(|(_, flag)| **flag > 0);
     (order.clone(), on_planes.map(|(index, _)| *index).collect(), cleaned.counts)
