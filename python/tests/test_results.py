@@ -29,8 +29,8 @@ def test_contacts_carry_the_weight(prediction: hangpose.Prediction) -> None:
 
 
 def test_text(prediction: hangpose.Prediction, mug: hangpose.Object, hook: hangpose.Supporter) -> None:
-    assert repr(mug) == "<Object 'mug.obj': 7104 triangles, 114 places to hang by>"
-    assert repr(hook) == "<Supporter 'hook.ply': 10000 points, 11 places to hang on>"
+    assert repr(mug) == "<Object 'mug.obj': 7104 triangles, 158 places to hang by>"
+    assert repr(hook) == "<Supporter 'hook.ply': 10000 points, 12 places to hang on>"
     assert repr(prediction.best).startswith("<Pose 1: threaded, hangs with probability 98%, release at (")
     assert repr(hangpose.Params("paper", friction=0.6)) == "Params('paper', friction=0.6)"
     patient = {"firm_enough": 8}
@@ -94,6 +94,6 @@ def test_a_way_there_and_back(prediction: hangpose.Prediction) -> None:
 
 def test_properties(mug: hangpose.Object, hook: hangpose.Supporter) -> None:
     assert mug.mass["is_closed"] and mug.mass["volume"] > 0
-    assert mug.places.shape == (114, 3) and hook.places.shape == (11, 3) and hook.guessed == 0
+    assert mug.places.shape == (158, 3) and hook.places.shape == (12, 3) and hook.guessed == 0
     assert mug.symmetries == []
     assert np.abs(mug.centre_of_mass).max() < 0.1
