@@ -36,8 +36,9 @@ pub(crate) struct Views<'a> {
     pub(super) needed: [f32; 3],
 }
 
-/// The most viewpoints that are kept. Of more, as many are taken, spread over all.
-const MAX_VIEWS: usize = 32;
+/// The most viewpoints that are kept. Of more, as many are taken, spread over all. More than a scan from all sides has (24), and as many as
+/// fit into the memory for an object that programs were promised by the C header (`HANGPOSE_OBJECT_BYTES_AT_LEAST`).
+const MAX_VIEWS: usize = 28;
 /// Directions that are probed for a camera.
 const DIRECTIONS: usize = 128;
 /// Cosine of the angle between a surface's normal and the way to a camera up to which the camera sees the surface well: 60
