@@ -92,9 +92,9 @@ fn a_map_frame_gets_its_poses_back() {
         [near, far].map(|file| scene.predict_with(&scene.ring, &file, &["--top", "1"])["poses"][0].clone());
     shapes::assert_hangs_by_the_ring(&near);
     for (i, offset) in offset.into_iter().enumerate() {
-        // The two clouds begin at different offsets, so that their last bits differ, and the poses by a little. Along the peg it may
-        // rest anywhere.
-        let tolerance = if i == 0 { 0.02 } else { 0.002 };
+        // The two clouds begin at different offsets, so that their last bits differ, and the poses by a little: more along the peg, where
+        // the ring may rest anywhere.
+        let tolerance = if i == 0 { 0.006 } else { 0.002 };
         for (name, at) in [("position", i), ("pose", 4 * i + 3), ("rest_pose", 4 * i + 3)] {
             let [near, far] = [&near, &far].map(|pose| number(&pose[name][at]));
             assert!((far - offset - near).abs() < tolerance, "{name}: {near} and {far}");
