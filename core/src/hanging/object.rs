@@ -31,6 +31,8 @@ pub struct Object<'m> {
     reach: f32,
     mass: MassProperties,
     centre_of_mass: Point,
+    /// [`Body::centre_error`].
+    centre_error: f32,
     symmetries: Symmetries,
     views: Views<'m>,
     work: Work,
@@ -106,7 +108,11 @@ impl<'m> Object<'m> {
             CentreOfMass::Volume => mass.volume_centroid,
             CentreOfMass::Given(point) => Some(Point::from(point)),
         };
-        let centre_of_mass = centre_of_mass.map_or_else(|| mean_of(points), |point| frame * point);
+        let of_surface = mean_of(points);
+        let centre_of_mass = centre_of_mass.map_or(of_surface, |point| frame * point);
+        // Whether an open mesh is a solid with holes in its surface or a sheet is not known.
+        let is_solid_or_sheet = params.centre_of_mass == CentreOfMass::Volume && !mass.is_closed;
+        let centre_error = if is_solid_or_sheet { (centre_of_mass - of_surface).norm() } else { 0.0 };
         let symmetries = match &field {
             Some(field) => {
                 let inertia = rotated(&mass.inertia, &frame);
@@ -134,6 +140,7 @@ impl<'m> Object<'m> {
             reach,
             mass,
             centre_of_mass,
+            centre_error,
             symmetries,
             views,
             work,
@@ -151,6 +158,7 @@ impl<'m> Object<'m> {
             field: self.field.as_ref()?,
             surface: &self.surface,
             centre: self.centre_of_mass,
+            centre_error: self.centre_error,
             frame: &self.frame,
             inverse_inertia,
             reach: self.reach,

@@ -14,6 +14,8 @@ pub(crate) struct Body<'a> {
     pub(crate) surface: &'a Surface<'a>,
     /// Centre of mass, metres.
     pub(crate) centre: Point,
+    /// By how much the centre of mass may be wrong, metres; zero if it is given or the mesh is closed.
+    pub(crate) centre_error: f32,
     /// Inverse of the inertia tensor about the centre of mass, 1/m².
     pub(crate) inverse_inertia: Matrix3<f32>,
     /// Distance from the centre of mass to the farthest point of the shape, metres.

@@ -2,8 +2,8 @@
 
 use super::body::State;
 use super::constants::{
-    FALL_EXTENT_RATIO, FALL_HEIGHT, FREE_TRAVEL, FREEING_TIME, GRAVITY, REST_WINDOW, ROTATION_OFF_ANGLE,
-    SWING_REST_SPEED, SWING_TIME,
+    ENOUGH_PLAY, FALL_EXTENT_RATIO, FALL_HEIGHT, FREE_TRAVEL, FREEING_TIME, GRAVITY, REST_WINDOW,
+    ROTATION_OFF_ANGLE, SWING_REST_SPEED, SWING_TIME,
 };
 use super::motion::{Motion, Settings};
 use super::neighbourhood::Sleep;
@@ -117,25 +117,35 @@ fn simulate(
     Ok(None)
 }
 
-/// Whether the body comes free when gravity is reversed. A body that does not is wedged, or was pushed onto
-/// the supporter.
-pub(crate) fn comes_free(
+/// How far the body travels without contact when gravity is reversed, metres, at most [`ENOUGH_PLAY`]; `None` if it does not come
+/// free. A body that does not is wedged, or was pushed onto the supporter.
+pub(crate) fn play(
     (body, support): (&Body, &Support),
     rest: &Pose,
     down: &Vector,
     settings: Settings,
     sleeps: &mut [Sleep],
     meter: &mut Meter,
-) -> Result<bool, Stop> {
+) -> Result<Option<f32>, Stop> {
     let start = body.at(rest);
     let mut motion = Motion::new((body, support), start, settings, sleeps);
+    // Where the contact was lost, and the longest travel without contact.
+    let (mut lost, mut play) = (start.centre, 0.0_f32);
+    let mut is_free = false;
     for _ in 0..settings.steps(FREEING_TIME) {
         motion.step(&(-down * GRAVITY), meter)?;
-        if !motion.touches && (motion.state.centre - start.centre).norm() > FREE_TRAVEL {
-            return Ok(true);
+        let centre = motion.state.centre;
+        if motion.touches {
+            lost = centre;
+            continue;
+        }
+        is_free |= (centre - start.centre).norm() > FREE_TRAVEL;
+        play = play.max((centre - lost).norm());
+        if is_free && play >= ENOUGH_PLAY {
+            break;
         }
     }
-    Ok(false)
+    Ok(is_free.then_some(play.min(ENOUGH_PLAY)))
 }
 
 /// Time steps of a pull without contact; what is held back is pulled for twice as long.

@@ -75,6 +75,7 @@ impl Scene {
         let centre = mass.volume_centroid.expect("the test shapes are closed");
         let reach = mesh.vertices().iter().map(|v| (Point::from(*v) - centre).norm()).fold(0.0, f32::max);
         let body = Body {
+            centre_error: 0.0,
             field: &field,
             surface: &surface,
             centre,

@@ -7,6 +7,7 @@ pub(super) mod wishes;
 
 pub use rest::{Rest, Tolerance};
 
+use self::probability::Given;
 use super::error::PredictError;
 use super::opening;
 use super::pose::HangingPose;
@@ -16,8 +17,8 @@ use super::watch::Watch;
 use crate::best::Best;
 use crate::geometry::{Pose, Symmetry};
 use crate::mechanics::{
-    Body, Contact, Fate, Frames, Settings, Settled, Sleep, Support, Unseen, carrying_contacts, comes_free,
-    kind_of, lever, margin, push_off_surface, release_pose, settle, unseen,
+    Body, Contact, Fate, Frames, Settings, Settled, Sleep, Support, carrying_contacts, kind_of, lever,
+    margin, play, push_off_surface, release_pose, settle, unseen,
 };
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop};
@@ -74,7 +75,7 @@ pub(super) struct Settling<'a> {
     /// As much again, for what runs at the same time.
     other_sleeps: &'a mut [Sleep],
     pub(super) counts: SettlingCounts,
-    /// Greatest merit of a pose so far, and the probability of that pose.
+    /// Greatest merit of a pose so far, and the probability of that pose with room.
     best: (f32, f32),
     /// Number of releases that came to rest since then and were no better.
     no_better: usize,
@@ -115,10 +116,10 @@ const SAME: Distance = Distance { position: 0.005, rotation: 0.1 };
 const MIN_USEFUL_TILT: f32 = 0.15;
 /// Share by which a pose must be better than the best one to count as progress: about the error of the probability.
 const CLEARLY_BETTER: f32 = 0.01;
-/// Probability from which a pose is good enough for the search to end without enough firm ones. Larger: where no pose is firm, all
+/// Probability with room from which a pose is good enough for the search to end without enough firm ones. Larger: where no pose is firm, all
 /// attempts are made. Smaller: better poses are missed. Chosen by hand: 96 % of the best poses of `tables --pairs 165 --seed 7`
 /// hang with this rule and without it.
-const GOOD: f32 = 0.95;
+const GOOD: f32 = 0.987;
 /// Releases in a row that come to rest without progress before the search ends, for each firm pose that is wanted
 /// ([`Params::firm_enough`]). Larger: the best pose is stable under tilt more often, at more time. Smaller: the reverse. Chosen by
 /// hand together with [`GOOD`]: 91 % of these poses are robust, and 92 % without the rule.
@@ -240,22 +241,24 @@ impl<'a> Settling<'a> {
         if !self.is_as_asked((&settled.pose, &pose), &contacts, kind, meter)? {
             return Ok(true);
         }
-        if !comes_free(scene, &settled.pose, &down, Settings::damped(params), self.sleeps, meter)? {
+        let settings = Settings::damped(params);
+        let Some(play) = play(scene, &settled.pose, &down, settings, self.sleeps, meter)? else {
             self.counts.wedged += 1;
             return Ok(false);
-        }
+        };
         // A pose that cannot beat the last one of a full list need not be tilted in every direction.
         let last = poses.next_to_go().map_or(0.0, |pose| self.merit(pose)) / self.request.weight(kind);
         let unseen = unseen(scene, &pose, meter)?;
-        let least = probability::least_tilt(last, gap, &unseen).max(MIN_USEFUL_TILT);
+        let given = Given { kind, clearance: gap, play, centre_error: self.body.centre_error, unseen };
+        let least = probability::least_tilt(last, &given).max(MIN_USEFUL_TILT);
         let at = (&settled.pose, &contacts[..]);
         let sleeps = [&mut *self.sleeps, &mut *self.other_sleeps];
         let margin = margin(scene, at, &down, params, least, sleeps, meter)?;
         let tolerance = tolerance::of(self.body, &settled.pose, gap, &margin, &contacts);
-        let kind = (kind, self.opening(&settled.pose, &contacts, meter)?);
-        let rest = Rest::new(settled.pose, kind, (sinking, gap), tolerance, unseen, margin, &contacts);
+        let opening = self.opening(&settled.pose, &contacts, meter)?;
+        let rest = Rest::new(settled.pose, &given, (sinking, opening), tolerance, margin, &contacts);
         let least = self.params.min_probability;
-        if rest.probability < least && probability::of(&margin, gap, &Unseen::default()) >= least {
+        if rest.probability < least && probability::of(&margin, &given.as_if_seen()) >= least {
             self.counts.unseen += 1;
         }
         if rest.probability < least || self.known(&rest.pose, poses).is_some() {
@@ -267,11 +270,12 @@ impl<'a> Settling<'a> {
         }
         self.counts.probable += 1;
         self.count_firm(&rest);
-        self.has_reliable |= probability::is_reliable(rest.probability, &rest.margin, &rest.unseen);
+        self.has_reliable |= rest.is_reliable();
         let pose = HangingPose { pose, rest: Some(rest), matched: start.matched };
         let merit = self.merit(&pose);
         if merit > (1.0 + CLEARLY_BETTER) * self.best.0 {
-            (self.best, self.no_better) = ((merit, rest.probability), 0);
+            let with_room = probability::with_room(&rest.margin, gap, &rest.unseen);
+            (self.best, self.no_better) = ((merit, with_room), 0);
         }
         self.offer(pose, poses);
         Ok(true)
@@ -332,8 +336,9 @@ impl<'a> Settling<'a> {
 
     fn count_firm(&mut self, rest: &Rest) {
         let is_preferred = self.request.prefer.contains(rest.kind);
-        self.counts.firm += usize::from(rest.is_firm());
-        self.counts.firm_as_preferred += usize::from(rest.is_firm() && is_preferred);
+        let is_firm = rest.is_firm();
+        self.counts.firm += usize::from(is_firm);
+        self.counts.firm_as_preferred += usize::from(is_firm && is_preferred);
     }
 
     /// The rest pose among `poses` that equals `pose` to within a robot's accuracy, or that is firm, as preferred, and hardly

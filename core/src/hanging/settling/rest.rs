@@ -1,6 +1,6 @@
 //! Where a released object comes to rest, and how firmly.
 
-use super::probability;
+use super::probability::{self, Given};
 use crate::geometry::{Pose, Symmetry, Vector, least_angle};
 use crate::hanging::request::Distance;
 use crate::mechanics::{Body, Contact, Frames, Kind, MAX_CONTACTS, Margin, Unseen};
@@ -49,10 +49,9 @@ pub struct Rest {
 impl Rest {
     pub(super) fn new(
         pose: Pose,
-        (kind, opening): (Kind, f32),
-        (sinking, clearance): (f32, f32),
+        given: &Given,
+        (sinking, opening): (f32, f32),
         tolerance: Tolerance,
-        unseen: Unseen,
         margin: Margin,
         bearing: &[Contact],
     ) -> Self {
@@ -60,8 +59,9 @@ impl Rest {
         for (to, from) in contacts.iter_mut().zip(bearing) {
             *to = *from;
         }
-        let probability = probability::of(&margin, clearance, &unseen);
-        let robustness = probability::of_robust(&margin, &unseen);
+        let &Given { kind, clearance, unseen, .. } = given;
+        let probability = probability::of(&margin, given);
+        let robustness = probability::of_robust(&margin, given);
         let contact_count = bearing.len().min(MAX_CONTACTS) as u8;
         Self {
             pose,
@@ -98,9 +98,14 @@ impl Rest {
         }
     }
 
-    /// Whether nothing but what nobody saw keeps the pose from being certain.
+    /// Whether nothing but what nobody knows of the object and the supporter keeps the pose from being certain.
     pub(super) fn is_firm(&self) -> bool {
-        probability::is_firm(self.probability, &self.margin, &self.unseen)
+        probability::is_firm(&self.margin, self.clearance, &self.unseen)
+    }
+
+    /// Whether the pose is as good as ends a long search.
+    pub(super) fn is_reliable(&self) -> bool {
+        probability::is_reliable(&self.margin, self.clearance, &self.unseen)
     }
 
     /// The contacts that carry the object at rest.
