@@ -193,6 +193,12 @@ impl<'m> Object<'m> {
         self.frame.inverse_transform_point(&self.centre_of_mass)
     }
 
+    /// By how much the centre of mass may be wrong, metres: for [`CentreOfMass::Volume`] of an open mesh, which is a solid with holes in
+    /// its surface or a sheet, the distance between the centroids of both. Zero for closed meshes and given centres.
+    pub fn centre_of_mass_error(&self) -> f32 {
+        self.centre_error
+    }
+
     /// The frames of the object and of a supporter.
     pub(crate) fn frames_with(&self, supporter: &Supporter) -> Frames {
         Frames { object: self.frame, supporter: *supporter.frame() }

@@ -28,6 +28,9 @@ pub struct Row {
     /// How a person would hang a generated pair that fits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub meant: Option<Kind>,
+    /// By how much the object's centre of mass may be wrong, m.
+    #[serde(default)]
+    pub centre_error: f32,
     /// Stage at which the prediction was rejected, if it was.
     pub rejection: Option<String>,
     /// Duration of analysis and prediction on one thread, s.
@@ -97,6 +100,12 @@ pub struct Said {
     pub clearance: f32,
     /// Sinking from release to rest, m.
     pub sinking: f32,
+    /// Travel without contact as the object is lifted off, m.
+    #[serde(default)]
+    pub play: f32,
+    /// Error of the centre of mass that is tolerated, m.
+    #[serde(default)]
+    pub centre_of_mass_radius: f32,
     /// Number of contacts at rest.
     pub contacts: usize,
     /// Shares that no camera has seen: of the directions to the object, of the supporter in the object's shadow, and of the
@@ -119,6 +128,8 @@ impl From<&Rest> for Said {
             escape_ratio: rest.margin.escape_ratio,
             clearance: rest.clearance,
             sinking: rest.sinking,
+            play: rest.play(),
+            centre_of_mass_radius: rest.margin.centre_of_mass_radius,
             contacts: rest.contacts().len(),
             unseen: [rest.unseen.object, rest.unseen.shadow, rest.unseen.supporter],
         }

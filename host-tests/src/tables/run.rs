@@ -143,6 +143,7 @@ fn judge(case: &Case, profile: &str, params: &Params, scan: &Option<Spec>, optio
         doubtful: false,
         meant: case.meant,
         rejection: Some(NOTHING_SEEN.into()),
+        centre_error: 0.0,
         seconds: 0.0,
         outcomes: Vec::new(),
         second: None,
@@ -211,5 +212,6 @@ fn judge(case: &Case, profile: &str, params: &Params, scan: &Option<Spec>, optio
         .filter(|_| options.engine == Engine::Both)
         .map(|pose| drop(&mut ode.world(&scene), pose).0);
     let rejection = prediction.rejection.map(|rejection| format!("{:?}", rejection.stage));
-    Row { rejection, seconds, outcomes, second, loss, ..row }
+    let centre_error = object.centre_of_mass_error();
+    Row { centre_error, rejection, seconds, outcomes, second, loss, ..row }
 }

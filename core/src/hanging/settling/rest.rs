@@ -44,6 +44,8 @@ pub struct Rest {
     pub(super) opening: f32,
     contacts: [Contact; MAX_CONTACTS],
     contact_count: u8,
+    /// [`Rest::play`], micrometres.
+    play: u16,
 }
 
 impl Rest {
@@ -76,6 +78,7 @@ impl Rest {
             opening,
             contacts,
             contact_count,
+            play: (given.play * 1e6) as u16,
         }
     }
 
@@ -95,7 +98,15 @@ impl Rest {
             opening: 0.0,
             contacts: [Contact::default(); MAX_CONTACTS],
             contact_count: 0,
+            play: 0,
         }
+    }
+
+    /// The probability less a reserve, for the rank.
+    pub(super) fn cautious(&self, body: &Body) -> f32 {
+        let &Self { kind, clearance, unseen, .. } = self;
+        let given = Given { kind, clearance, play: self.play(), centre_error: body.centre_error, unseen };
+        probability::cautious(&self.margin, &given)
     }
 
     /// Whether nothing but what nobody knows of the object and the supporter keeps the pose from being certain.
@@ -106,6 +117,12 @@ impl Rest {
     /// Whether the pose is as good as ends a long search.
     pub(super) fn is_reliable(&self) -> bool {
         probability::is_reliable(&self.margin, self.clearance, &self.unseen)
+    }
+
+    /// Longest travel of the centre of mass without contact while the object is lifted off, metres, up to 4 mm. Where it is
+    /// little, the object fits hardly over what it hangs on.
+    pub fn play(&self) -> f32 {
+        f32::from(self.play) * 1e-6
     }
 
     /// The contacts that carry the object at rest.
