@@ -14,7 +14,7 @@ help:
 	@echo "make tables   simulate 600 pairs in two engines and write docs/RESULTS.md [MESHES=folder adds real meshes]"
 	@echo "make meant    measure kinds, turned frames, mug trees, tolerances and probabilities [MESHES=folder adds real meshes]"
 	@echo "make reach    plan paths in several scenes, replay them in Bullet and write two sections of docs/RESULTS.md"
-	@echo "make calibrate  refit the constants of docs/PROBABILITY.md"
+	@echo "make calibrate  refit the constants of docs/PROBABILITY.md [MESHES=folder]"
 	@echo "make lib      build libhangpose.a and libhangpose.so for C and C++ in build/link"
 	@echo "make command  build the command hangpose, its completions for shells and its man pages"
 	@echo "make install  install the libraries, the headers and the command: [PREFIX=/usr/local] [DESTDIR=...]"
@@ -142,7 +142,11 @@ $(peer_python): bench/requirements.txt
 calibrate: setup $(peer_python)
 	@mkdir -p build
 	cargo run --release -p host-tests --bin tables -- --summary --all --engine bullet --profile default --pairs 330 --seed 100 --json build/calibration.jsonl
-	$(peer_python) bench/calibrate.py build/calibration.jsonl
+ifdef MESHES
+	cargo run --release -p host-tests --bin tables -- --summary --all --engine bullet --profile default --pairs 0 --seed 100 \
+		--meshes $(MESHES) --real-pairs 106 --json build/calibration_real.jsonl
+endif
+	$(peer_python) bench/calibrate.py build/calibration.jsonl $(if $(MESHES),build/calibration_real.jsonl)
 	cargo run --release -p host-tests --bin tables -- --summary --all --engine bullet --profile improbable --pairs 60 --seed 12 \
 		--scan $(scans) --json build/doubt.jsonl
 	$(peer_python) bench/doubt.py build/doubt.jsonl
