@@ -75,7 +75,7 @@ pub(super) struct Settling<'a> {
     /// As much again, for what runs at the same time.
     other_sleeps: &'a mut [Sleep],
     pub(super) counts: SettlingCounts,
-    /// Greatest merit of a pose so far, and the probability of that pose with room.
+    /// Greatest merit of a pose so far, and `probability::with_room` of that pose.
     best: (f32, f32),
     /// Number of releases that came to rest since then and were no better.
     no_better: usize,
@@ -116,8 +116,8 @@ const SAME: Distance = Distance { position: 0.005, rotation: 0.1 };
 const MIN_USEFUL_TILT: f32 = 0.15;
 /// Share by which a pose must be better than the best one to count as progress: about the error of the probability.
 const CLEARLY_BETTER: f32 = 0.01;
-/// Probability with room from which a pose is good enough for the search to end without enough firm ones. Larger: where no pose is firm, all
-/// attempts are made. Smaller: better poses are missed. Chosen by hand: 96 % of the best poses of `tables --pairs 165 --seed 7`
+/// What must remain of the probability with room (`probability::with_room`) for the search to end without enough firm poses. Larger: where
+/// no pose is firm, all attempts are made. Smaller: better poses are missed. Chosen by hand: 96 % of the best poses of `tables --pairs 165 --seed 7`
 /// hang with this rule and without it.
 const GOOD: f32 = 0.95;
 /// Releases in a row that come to rest without progress before the search ends, for each firm pose that is wanted

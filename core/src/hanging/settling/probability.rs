@@ -45,11 +45,11 @@ const ROBUST_PER_ESCAPE: f32 = 5.94;
 /// Escape ratio that counts at most: who has to lift the centre of mass by twice the lever does not come off by a knock.
 const MAX_ESCAPE_RATIO: f32 = 2.0;
 
-/// Probability, with room and without what was not seen, from which a pose is firm: it survives the jolt test and a tilt of about
+/// What must remain of the probability with room ([`with_room`]) for a pose to be firm: it survives the jolt test and a tilt of about
 /// 1 rad. [`Params::firm_enough`](crate::Params::firm_enough) such releases end the search.
 const FIRM: f32 = 0.975;
-/// Probability, likewise, from which a pose is reliable: a long search ends with such a pose, and goes on without. With 0.95 one more of 98
-/// scanned pairs hangs, and the slowest of a hundred pairs takes seven times the median; 0.8 and 0.9 do not differ on scans
+/// The same for a pose to be reliable: a long search ends with such a pose, and goes on without. With 0.95 one more of 98 scanned pairs
+/// hangs, and the slowest of a hundred pairs takes seven times the median; 0.8 and 0.9 do not differ on scans
 /// (commands at `ENOUGH_QUERIES`).
 const RELIABLE: f32 = 0.9;
 
@@ -110,8 +110,8 @@ fn share_as_weighed(centre_error: f32, margin: &Margin) -> f32 {
     libm::expf(-PER_CENTRE_ERROR * (centre_error / tolerated).min(MAX_CENTRE_ERROR))
 }
 
-/// [`cautious`] of a pose of an object that has room where it hangs, and whose centre of mass is certain: it tells how good the pose is
-/// among those of one object.
+/// What remains of the probability ([`cautious`]) of a pose if the object had room where it hangs and its centre of mass were certain. Both
+/// are much the same for all poses of a pair, so a longer search would not better them.
 pub(super) fn with_room(margin: &Margin, clearance: f32, unseen: &Unseen) -> f32 {
     let (kind, play, centre_error) = (Kind::Hooked, ENOUGH_PLAY, 0.0);
     cautious(margin, &Given { kind, clearance, play, centre_error, unseen: *unseen })
