@@ -12,6 +12,8 @@ from sklearn.linear_model import LogisticRegression
 
 MOST_CLEARANCE_MM = 1.0
 LEAST_PLAY_MM = 2.0
+# Less than the 4 mm up to which play is told, by its rounding.
+ENOUGH_PLAY_MM = 3.999
 LEAST_SINKING_MM = 8.0
 MOST_SINKING_MM = 10.0
 MOST_ESCAPE_RATIO = 2.0
@@ -29,6 +31,8 @@ class Poses:
         of_all = lambda value: np.array([value(row, outcome, said) for row, outcome, said in told])
         self.pair = of_all(lambda row, outcome, said: row["pair"])
         self.hangs = of_all(lambda row, outcome, said: outcome["clear"] and outcome["holds"] and outcome["honest"])
+        self.holds = of_all(lambda row, outcome, said: outcome["clear"] and outcome["holds"])
+        self.play = of_all(lambda row, outcome, said: 1000 * said["play"])
         self.robust = self.hangs & of_all(lambda row, outcome, said: outcome["robust"])
         self.said = of_all(lambda row, outcome, said: said["probability"])
         self.said_robust = of_all(lambda row, outcome, said: said["robustness"])
@@ -84,6 +88,17 @@ def print_reliability(said, came):
 EDGES = [0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 1.0]
 
 
+def print_play(poses):
+    """Prints how many of the poses that hold come free in the judge as well, so that they hang."""
+    print("of the poses that hold, by play:")
+    bounds = [0.0, LEAST_PLAY_MM, 2.5, 3.0, 3.5, ENOUGH_PLAY_MM, np.inf]
+    for low, high in zip(bounds, bounds[1:]):
+        of = poses.holds & (poses.play >= low) & (poses.play < high)
+        if of.any():
+            name = f"{low:.1f} mm and more" if np.isinf(high) else f"{low:.1f} to {high:.1f} mm"
+            print(f"{name}: {of.sum()} poses, hang {100 * poses.hangs[of].mean():.1f} %")
+
+
 def fit_margin(poses):
     print("constant, per second, per radian, per mm of clearance, per mm of play, balanced, per mm of sinking")
     fitted = fit("hangs", poses.features, poses.hangs)
@@ -100,6 +115,7 @@ def fit_margin(poses):
         shares = 100 * poses.hangs[best].mean(), 100 * poses.robust[best].mean()
         print(f"best of {len(best)} pairs, {name}: hang {shares[0]:.1f} %, robust {shares[1]:.1f} %")
     print_reliability(poses.said, poses.hangs)
+    print_play(poses)
 
 
 def fit_centre(poses):

@@ -56,7 +56,7 @@ fn the_paper_gives_the_same_bytes_everywhere() {
 
 #[test]
 fn the_default_gives_the_same_bytes_everywhere() {
-    let pairs = [("mug.obj", "hook.ply", "7630aa76"), ("scissors.obj", "mug_tree.ply", "67681e5c")];
+    let pairs = [("mug.obj", "hook.ply", "6ef62492"), ("scissors.obj", "mug_tree.ply", "66e32234")];
     // All hashes are compared at once, so that one run prints all new ones.
     let found =
         pairs.map(|(object, supporter, _)| (object, supporter, hash(object, supporter, &Params::default())));

@@ -7,7 +7,7 @@ use hangpose::geometry::{Cloud, Mesh, Point, Pose, Vector};
 use hangpose::hanging::{HangingPose, Request, Rest, predict_bytes, predict_many};
 use hangpose::mechanics::{Contact, Kind, Kinds};
 use hangpose::{Monitor, Params, analyze_object, analyze_supporter, sample_supporter};
-use host_tests::judge::{Bullet, Judge, Scene};
+use host_tests::judge::{Bullet, Judge, Ode, Scene};
 use host_tests::reach::tree::Tree;
 use host_tests::shapes::{Bar, Joint, Random, is_daily};
 use host_tests::tables::case::{Case, Fit, made};
@@ -80,10 +80,12 @@ fn main() -> Result<()> {
         Measure::Tolerance => tolerance(&fitting(pairs, seed), threads),
         Measure::Probability { meshes, real_pairs } => {
             println!("Generated pairs:\n");
-            probability(&fitting(pairs, seed), threads);
+            let told = told(&fitting(pairs, seed), threads);
+            print_probability(&told);
+            print_other_engine(&told);
             if let Some(folder) = meshes {
                 println!("\nReal meshes:\n");
-                probability(&real(&folder, real_pairs)?, threads);
+                print_probability(&self::told(&real(&folder, real_pairs)?, threads));
             }
         }
     }
@@ -333,12 +335,22 @@ struct Told {
     said: [f32; 2],
     /// Whether it hangs, and whether it hangs robustly.
     came: [bool; 2],
+    /// Whether it hangs in ODE, of a generated pair.
+    hangs_in_ode: bool,
 }
 
-/// Prints how often poses of pairs that fit hang and are robust, by what is said of them. A pair of real meshes fits if one of
-/// its poses hangs or a random search finds one that does.
-fn probability(cases: &[Case], threads: usize) {
-    let told: Vec<Told> = each(cases, threads, tell).into_iter().flatten().collect();
+/// The poses of pairs that fit. A pair of real meshes fits if one of its poses hangs or a random search finds one that does.
+fn told(cases: &[Case], threads: usize) -> Vec<Told> {
+    each(cases, threads, tell).into_iter().flatten().collect()
+}
+
+/// Share of the Brier score of the base rate that is saved by a Brier score.
+fn brier_skill(brier: f64, base: f64) -> f64 {
+    1.0 - brier / (base * (1.0 - base))
+}
+
+/// Prints how often poses hang and are robust, by what is said of them.
+fn print_probability(told: &[Told]) {
     println!("{} poses", told.len());
     for (which, name) in [(0, "hang"), (1, "robust")] {
         println!("\n| said, % | poses | said mean, % | {name}, % |\n|---|--:|--:|--:|");
@@ -359,10 +371,29 @@ fn probability(cases: &[Case], threads: usize) {
         println!(
             "\n{name}: base rate {:.1} %, Brier score {brier:.4}, Brier skill {:.3}, area under the ROC curve {:.3}",
             100.0 * base,
-            1.0 - brier / (base * (1.0 - base)),
-            roc_area(&told, which)
+            brier_skill(brier, base),
+            roc_area(told, which)
         );
     }
+}
+
+/// Prints how well the verdict of a second engine tells what becomes of a pose in the first: the skill of the best probability
+/// that follows from it, which is the share that hangs of the poses with the same verdict.
+fn print_other_engine(told: &[Told]) {
+    let share = |of: &[&Told]| of.iter().filter(|told| told.came[0]).count() as f64 / of.len() as f64;
+    let base = share(&told.iter().collect::<Vec<_>>());
+    let (mut brier, mut shares) = (0.0, Vec::new());
+    for hangs_in_ode in [true, false] {
+        let same: Vec<&Told> = told.iter().filter(|told| told.hangs_in_ode == hangs_in_ode).collect();
+        if same.is_empty() {
+            continue;
+        }
+        let hang = share(&same);
+        brier += hang * (1.0 - hang) * same.len() as f64 / told.len() as f64;
+        let verdict = if hangs_in_ode { "hang" } else { "do not hang" };
+        shares.push(format!("of {} that {verdict} in ODE {:.1} % hang in Bullet", same.len(), 100.0 * hang));
+    }
+    println!("\n{}: Brier skill {:.3}", shares.join(", "), brier_skill(brier, base));
 }
 
 /// Share of the pairs of a pose that comes true and one that does not in which the first is said to be more probable;
@@ -382,6 +413,9 @@ fn roc_area(told: &[Told], which: usize) -> f64 {
 fn tell(case: &Case) -> Vec<Told> {
     let scene = Scene::new(&case.object, &case.supporter);
     let mut world = Bullet::default().world(&scene);
+    // ODE knows no shells, of which real meshes are made.
+    let steady = Scene { tilt: false, ..scene };
+    let mut ode = (case.fit == Fit::Yes).then(|| Ode::default().world(&steady));
     let poses = best(case, ALL_POSES);
     let told: Vec<Told> = poses
         .iter()
@@ -391,6 +425,7 @@ fn tell(case: &Case) -> Vec<Told> {
             Some(Told {
                 said: [pose.rest?.probability, pose.rest?.robustness],
                 came: [hangs, hangs && verdict.robust],
+                hangs_in_ode: ode.as_mut().is_some_and(|ode| ode.judge(&steady, &pose.pose).success()),
             })
         })
         .collect();
