@@ -12,8 +12,7 @@ from sklearn.linear_model import LogisticRegression
 
 MOST_CLEARANCE_MM = 1.0
 LEAST_PLAY_MM = 2.0
-# Less than the 4 mm up to which play is told, by its rounding.
-ENOUGH_PLAY_MM = 3.999
+LITTLE_PLAY_MM = 3.0
 LEAST_SINKING_MM = 8.0
 MOST_SINKING_MM = 10.0
 MOST_ESCAPE_RATIO = 2.0
@@ -91,12 +90,9 @@ EDGES = [0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 1.0]
 def print_play(poses):
     """Prints how many of the poses that hold come free in the judge as well, so that they hang."""
     print("of the poses that hold, by play:")
-    bounds = [0.0, LEAST_PLAY_MM, 2.5, 3.0, 3.5, ENOUGH_PLAY_MM, np.inf]
-    for low, high in zip(bounds, bounds[1:]):
-        of = poses.holds & (poses.play >= low) & (poses.play < high)
-        if of.any():
-            name = f"{low:.1f} mm and more" if np.isinf(high) else f"{low:.1f} to {high:.1f} mm"
-            print(f"{name}: {of.sum()} poses, hang {100 * poses.hangs[of].mean():.1f} %")
+    for name, of in [("less than 3 mm", poses.play < LITTLE_PLAY_MM), ("more", poses.play >= LITTLE_PLAY_MM)]:
+        of &= poses.holds
+        print(f"{name}: {of.sum()} poses, hang {100 * poses.hangs[of].mean():.1f} %")
 
 
 def fit_margin(poses):

@@ -119,10 +119,10 @@ pub struct Params {
     /// Maximum number of released poses while none is stable, and of candidates that touch the supporter, which are not released.
     /// Once a pose is stable, the maximum number of released poses is a quarter of it.
     pub settle_attempts: usize,
-    /// Number of firm releases after which the search ends. A release is firm if the probability of its rest
-    /// pose is at least 97.5 %, or if it hardly differs from such a pose. The search also ends after four times as
-    /// many releases in a row that come to rest without a better pose, once one has 95 %. A larger number gives
-    /// more different poses to choose from.
+    /// Number of firm releases after which the search ends. A release is firm if its rest pose stays when it is jolted and when
+    /// gravity tilts by about 1 rad, with 1 mm of clearance at release, or if it hardly differs from such a pose. The search also ends
+    /// after four times as many releases in a row that come to rest without a better pose, once one is nearly as firm. A larger
+    /// number gives more different poses to choose from.
     pub firm_enough: usize,
     /// Minimum probability that a returned pose hangs.
     pub min_probability: f32,

@@ -115,9 +115,9 @@ pub struct hangpose_params {
     /// Greatest number of poses that are released while none stays. Once one stays, a quarter of this number is the
     /// limit. 0 to 10000.
     pub settle_attempts: u32,
-    /// Number of firm releases that ends the search. A release is firm if its rest pose has a probability of 97.5 %
-    /// or more; two releases to the same rest pose count twice. A larger number gives more different poses to
-    /// choose from. 0 to 10000.
+    /// Number of firm releases that ends the search. A release is firm if its rest pose stays when it is jolted and
+    /// when gravity tilts by about 1 rad; two releases to the same rest pose count twice. A larger number gives more
+    /// different poses to choose from. 0 to 10000.
     pub firm_enough: u32,
     /// Least probability that the object hangs; poses below it are dropped; 0 to 1.
     pub min_probability: f32,

@@ -74,8 +74,8 @@ pub(super) const SWING_SPIN_DRAG: f32 = 1.5;
 pub(super) const FREE_TRAVEL: f32 = 0.002;
 /// Travel without contact under reversed gravity that is enough to be sure that the body comes free, m.
 ///
-/// Larger: more time. Smaller: a loop with hardly more room than [`FREE_TRAVEL`] passes for a wide one. Of the poses of seeds 100 and
-/// 102 that hold (`tables --all`), 86 % come free in the judge where the travel ends by 3 mm, and 99.5 % of others.
+/// Larger: more time. Smaller: a loop with hardly more room than [`FREE_TRAVEL`] passes for a wide one. Of the poses of seed 100
+/// that hold, 85 % come free in the judge where the travel ends by 3 mm, and 99.6 % of the others (`make calibrate`).
 pub(crate) const ENOUGH_PLAY: f32 = 0.004;
 /// Time within which a body must come free under reversed gravity, s.
 ///

@@ -48,7 +48,7 @@ pub struct SettlingCounts {
     /// Distinct rest poses with a probability of at least [`Params::min_probability`], with those that gave way to a better one that
     /// hardly differs.
     pub probable: usize,
-    /// Releases that came to rest in a pose with a probability of 97.5 % or more.
+    /// Releases that came to rest in a firm pose: [`Params::firm_enough`].
     pub firm: usize,
     /// Those of them that hang in a way that is preferred ([`Request::prefer`]).
     pub firm_as_preferred: usize,
