@@ -125,7 +125,7 @@ meant: setup
 	cargo run --release -p host-tests --bin meant -- turned --pairs 160 --seed 41
 	cargo run --release -p host-tests --bin meant -- many --pairs 15 --seed 41
 	cargo run --release -p host-tests --bin meant -- tolerance --pairs 60 --seed 41
-	cargo run --release -p host-tests --bin meant -- probability --pairs 90 --seed 41 $(if $(MESHES),--meshes $(MESHES))
+	cargo run --release -p host-tests --bin meant -- probability --pairs 200 --seed 41 $(if $(MESHES),--meshes $(MESHES))
 
 reach: setup
 	cargo run --release -p host-tests --bin reach -- --seed 65 --pairs 88 --trees 24 --enclosed 12 --peer --out docs/RESULTS.md

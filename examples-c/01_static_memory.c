@@ -56,7 +56,7 @@ int main(void) {
   const float *p = best->position, *q = best->quaternion;
   printf("%u poses; release at (%.4f, %.4f, %.4f) m, quaternion (%.4f, %.4f, %.4f, %.4f) xyzw\n",
          (unsigned)found.pose_count, p[0], p[1], p[2], q[0], q[1], q[2], q[3]);
-  printf("the ring sinks %.1f mm and hangs with probability %.2f, up to a tilt of %.2f rad\n",
+  printf("the ring sinks %.1f mm and hangs with probability %.3f, up to a tilt of %.2f rad\n",
          1000 * best->sinking, best->probability, best->margin.least_tilt);
   return 0;
 }

@@ -40,7 +40,7 @@ int main(int count, char **arguments) {
     const auto &q = pose.quaternion;
     std::printf("release at (%.4f, %.4f, %.4f) m, quaternion (%.4f, %.4f, %.4f, %.4f) xyzw: ", p[0], p[1],
                 p[2], q[0], q[1], q[2], q[3]);
-    std::printf("hangs with probability %.2f, up to a tilt of %.2f rad, contacts", pose.probability,
+    std::printf("hangs with probability %.3f, up to a tilt of %.2f rad, contacts", pose.probability,
                 pose.margin.least_tilt);
     for (const auto &contact : hangpose::contacts(pose)) {
       std::printf(" (%.4f, %.4f, %.4f)", contact.position[0], contact.position[1], contact.position[2]);

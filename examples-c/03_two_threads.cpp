@@ -66,7 +66,7 @@ int main() {
     std::printf("ring of %4.1f mm: %s", static_cast<double>(answer.radius) * 1000,
                 hangpose_status_string(answer.status));
     if (answer.best.has_rest)
-      std::printf(", with probability %.2f", static_cast<double>(answer.best.probability));
+      std::printf(", with probability %.3f", static_cast<double>(answer.best.probability));
     std::printf("\n");
   }
   return hung > 0 ? 0 : 3;

@@ -95,7 +95,7 @@ int main() {
   thread.join();
   const auto &p = shared.best.position;
   std::printf(
-      "%d ticks, at most %.3f ms late; release at (%.4f, %.4f, %.4f) m, hangs with probability %.2f\n", ticks,
+      "%d ticks, at most %.3f ms late; release at (%.4f, %.4f, %.4f) m, hangs with probability %.3f\n", ticks,
       std::chrono::duration<double, std::milli>(late).count(), static_cast<double>(p[0]),
       static_cast<double>(p[1]), static_cast<double>(p[2]), static_cast<double>(shared.best.probability));
   return is_done ? 0 : 1;

@@ -121,7 +121,7 @@ int main() {
               seen->points().size());
   std::printf("release at (%.4f, %.4f, %.4f) m, quaternion (%.4f, %.4f, %.4f, %.4f) xyzw: ", p[0], p[1], p[2],
               q[0], q[1], q[2], q[3]);
-  std::printf("hangs with probability %.2f, up to a tilt of %.2f rad\n", best.probability,
+  std::printf("hangs with probability %.3f, up to a tilt of %.2f rad\n", best.probability,
               best.margin.least_tilt);
   return 0;
 }

@@ -22,7 +22,7 @@ static std::vector<hangpose::vec3> wall() {
 
 static void print(std::size_t number, const hangpose::pose &pose) {
   const auto &p = pose.position;
-  std::printf("mug %zu: release at (%.4f, %.4f, %.4f) m, %s with probability %.2f; may be off by %.1f mm\n",
+  std::printf("mug %zu: release at (%.4f, %.4f, %.4f) m, %s with probability %.3f; may be off by %.1f mm\n",
               number, p[0], p[1], p[2], hangpose_kind_string(pose.kind), pose.probability,
               1000 * pose.tolerance_position);
 }

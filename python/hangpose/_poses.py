@@ -164,7 +164,7 @@ class Pose:
 
     def __repr__(self) -> str:
         x, y, z = self.release[:3, 3]
-        sure = "" if self.probability is None else f" {self.kind}, hangs with probability {self.probability:.0%}"
+        sure = "" if self.probability is None else f" {self.kind}, hangs with probability {self.probability:.1%}"
         return f"<Pose {self.rank}:{sure}, release at ({x:.4f}, {y:.4f}, {z:.4f}) m>"
 
 

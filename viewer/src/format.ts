@@ -27,7 +27,9 @@ export function degrees(radians: number | null | undefined): string {
 export function percent(share: number | null | undefined): string {
   if (!known(share)) return UNKNOWN;
   const value = 100 * share;
-  return `${value > 0 && value < 1 ? value.toFixed(1) : value.toFixed(0)}${SPACE}%`;
+  // What is possible is not 0 %, and what is not certain is not 100 %.
+  const isClose = (value > 0 && value < 1) || (value > 99 && value < 100);
+  return `${value.toFixed(isClose ? 1 : 0)}${SPACE}%`;
 }
 
 export function seconds(time: number | null | undefined): string {

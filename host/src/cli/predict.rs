@@ -379,7 +379,7 @@ fn in_words(rest: &Rest) -> String {
     });
     let guess = view_that_would_help(&rest.unseen).unwrap_or_default();
     format!(
-        "{}: hangs with probability {:.0} %, tolerates a tilt of {at_least}{tilt:.0} degrees or a knock of {:.1} m/s, sinks {:.1} mm after release{at}{guess}",
+        "{}: hangs with probability {:.1} %, tolerates a tilt of {at_least}{tilt:.0} degrees or a knock of {:.1} m/s, sinks {:.1} mm after release{at}{guess}",
         rest.kind,
         100.0 * rest.probability,
         margin.knock_speed,

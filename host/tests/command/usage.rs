@@ -98,7 +98,7 @@ fn the_table_says_what_was_read_and_agrees_with_the_json() {
         let tilt = numbers::<8>(&margin["tilts"]).into_iter().fold(f64::INFINITY, f64::min);
         let at_least = if tilt >= 1.2 { "at least " } else { "" };
         let words = format!(
-            "{:4}  {}: hangs with probability {:.0} %, tolerates a tilt of {at_least}{:.0} degrees or a knock of {:.1} m/s, sinks {:.1} mm after release, main contact at (",
+            "{:4}  {}: hangs with probability {:.1} %, tolerates a tilt of {at_least}{:.0} degrees or a knock of {:.1} m/s, sinks {:.1} mm after release, main contact at (",
             number(&pose["rank"]),
             pose["kind"].as_str().unwrap(),
             100.0 * number(&pose["probability"]),
