@@ -3,7 +3,7 @@
 >>> import hangpose
 >>> mug, hook = hangpose.Object("samples/mug.obj"), hangpose.Supporter("samples/hook.ply")
 >>> print(hangpose.predict(mug, hook).best)
-<Pose 1: threaded, hangs with probability 98%, release at (0.0408, -0.0345, -0.0738) m>
+<Pose 1: threaded, hangs with probability 99.6%, release at (0.0408, -0.0345, -0.0738) m>
 
 Lengths are in metres. A pose maps object coordinates to supporter coordinates, in which z is up.
 """

@@ -31,7 +31,7 @@ def test_contacts_carry_the_weight(prediction: hangpose.Prediction) -> None:
 def test_text(prediction: hangpose.Prediction, mug: hangpose.Object, hook: hangpose.Supporter) -> None:
     assert repr(mug) == "<Object 'mug.obj': 7104 triangles, 158 places to hang by>"
     assert repr(hook) == "<Supporter 'hook.ply': 10000 points, 12 places to hang on>"
-    assert repr(prediction.best).startswith("<Pose 1: threaded, hangs with probability 98%, release at (")
+    assert repr(prediction.best).startswith("<Pose 1: threaded, hangs with probability 99.6%, release at (")
     assert repr(hangpose.Params("paper", friction=0.6)) == "Params('paper', friction=0.6)"
     patient = {"firm_enough": 8}
     mug = hangpose.Object(SAMPLES / "mug.obj", params=patient)
