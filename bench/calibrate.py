@@ -1,6 +1,7 @@
 """Fits the constants of docs/PROBABILITY.md to the outcomes of poses in Bullet.
 
-Reads the rows that `tables --all --json` writes, of generated pairs and, in a second file, of real meshes. `make calibrate` runs both.
+Reads the rows that `tables --all --json` writes, of generated pairs and, in a second file, of real meshes. `make
+calibrate` runs both.
 """
 
 import json
@@ -9,6 +10,7 @@ import sys
 import numpy as np
 from scipy.optimize import minimize_scalar
 from sklearn.linear_model import LogisticRegression
+from sklearn.metrics import roc_auc_score
 
 MOST_CLEARANCE_MM = 1.0
 LEAST_PLAY_MM = 2.0
@@ -19,6 +21,8 @@ MOST_ESCAPE_RATIO = 2.0
 # As in core/src/hanging/settling/probability.rs.
 PER_CENTRE_ERROR = 0.6
 MOST_CENTRE_ERROR = 0.5
+# Edges of the bins of probability.
+EDGES = [0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 1.0]
 
 
 class Poses:
@@ -58,15 +62,10 @@ class Poses:
         )
 
 
-def skill(said, came):
-    """Share of the Brier score of the base rate that is saved."""
-    return 1 - np.mean((said - came) ** 2) / (came.mean() * (1 - came.mean()))
-
-
-def area(said, came):
-    """Area under the ROC curve: equal probabilities count half."""
-    yes, no = said[came], said[~came]
-    return np.mean((yes[:, None] > no) + 0.5 * (yes[:, None] == no))
+def print_quality(name, said, came):
+    """Prints the share of the Brier score of the base rate that is saved, and the area under the ROC curve."""
+    skill = 1 - np.mean((said - came) ** 2) / (came.mean() * (1 - came.mean()))
+    print(f"{name}: Brier skill {skill:.3f}, area {roc_auc_score(came, said):.3f}")
 
 
 def fit(name, features, outcomes):
@@ -84,9 +83,6 @@ def print_reliability(said, came):
             print(f"{low:.2f} to {high:.2f}: {of.sum():5} poses, said {said[of].mean():.3f}, hang {came[of].mean():.3f}")
 
 
-EDGES = [0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 1.0]
-
-
 def print_play(poses):
     """Prints how many of the poses that hold come free in the judge as well, so that they hang."""
     print("of the poses that hold, by play:")
@@ -101,9 +97,9 @@ def fit_margin(poses):
     print("constant, per second, per radian of mean tilt, per unit of escape ratio")
     fitted_to_robust = fit("robust", poses.robust_features, poses.robust)
     for name, probability in [("as it is", poses.said), ("fitted", fitted)]:
-        print(f"hangs, {name}: Brier skill {skill(probability, poses.hangs):.3f}, area {area(probability, poses.hangs):.3f}")
+        print_quality(f"hangs, {name}", probability, poses.hangs)
     for name, probability in [("as it is", poses.said_robust), ("fitted", fitted_to_robust)]:
-        print(f"robust, {name}: Brier skill {skill(probability, poses.robust):.3f}, area {area(probability, poses.robust):.3f}")
+        print_quality(f"robust, {name}", probability, poses.robust)
     for name, probability in [("as it is", poses.said), ("fitted", fitted), ("fitted to robust", fitted_to_robust)]:
         # Among equal probabilities the first pose, in the order of the predictor.
         pairs = np.unique(poses.pair)
@@ -127,10 +123,7 @@ def fit_centre(poses):
 
     fitted = minimize_scalar(loss, bounds=(0, 5), method="bounded").x
     for name, doubt in [("none", 0.0), ("as it is", PER_CENTRE_ERROR), ("fitted", fitted)]:
-        print(
-            f"doubt for the centre of mass, {name}: {doubt:.2f}, Brier skill {skill(said(doubt), poses.hangs):.3f}, "
-            f"area {area(said(doubt), poses.hangs):.3f}"
-        )
+        print_quality(f"doubt for the centre of mass, {name}, {doubt:.2f}", said(doubt), poses.hangs)
     bounds = [0.0, 1e-6, 0.1, 0.2, 0.3, 0.5, 1.0, np.inf]
     for low, high in zip(bounds, bounds[1:]):
         of = (poses.centre_error >= low) & (poses.centre_error < high)

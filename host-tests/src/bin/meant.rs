@@ -80,12 +80,12 @@ fn main() -> Result<()> {
         Measure::Tolerance => tolerance(&fitting(pairs, seed), threads),
         Measure::Probability { meshes, real_pairs } => {
             println!("Generated pairs:\n");
-            let told = told(&fitting(pairs, seed), threads);
-            print_probability(&told);
-            print_other_engine(&told);
+            let of_made = told(&fitting(pairs, seed), threads);
+            print_probability(&of_made);
+            print_other_engine(&of_made);
             if let Some(folder) = meshes {
                 println!("\nReal meshes:\n");
-                print_probability(&self::told(&real(&folder, real_pairs)?, threads));
+                print_probability(&told(&real(&folder, real_pairs)?, threads));
             }
         }
     }
@@ -335,7 +335,7 @@ struct Told {
     said: [f32; 2],
     /// Whether it hangs, and whether it hangs robustly.
     came: [bool; 2],
-    /// Whether it hangs in ODE, of a generated pair.
+    /// Whether it hangs in ODE, which judges generated pairs only.
     hangs_in_ode: bool,
 }
 
@@ -413,7 +413,7 @@ fn roc_area(told: &[Told], which: usize) -> f64 {
 fn tell(case: &Case) -> Vec<Told> {
     let scene = Scene::new(&case.object, &case.supporter);
     let mut world = Bullet::default().world(&scene);
-    // ODE knows no shells, of which real meshes are made.
+    // As in the tables, ODE judges generated pairs alone.
     let steady = Scene { tilt: false, ..scene };
     let mut ode = (case.fit == Fit::Yes).then(|| Ode::default().world(&steady));
     let poses = best(case, ALL_POSES);
