@@ -165,7 +165,8 @@ pub struct hangpose_supporter_info {
     pub points_on_planes: u32,
     /// Number of points that no viewpoint saw and that were guessed: the far sides of bars and plates.
     pub points_guessed: u32,
-    /// Number of normals that were missing or zero and were estimated from the neighbouring points.
+    /// Number of normals that were missing or zero and were estimated from the neighbouring points: all of the
+    /// cloud, where the given ones are no normals of the surface on which the points are.
     pub normals_estimated: u32,
     /// Number of normals that were not of unit length and were normalised.
     pub normals_renormalised: u32,

@@ -13,7 +13,8 @@ use crate::memory::{Arena, Limits, array_bytes, larger, model_bytes};
 use crate::monitor::{Meter, Monitor, Stop, Work};
 use crate::params::Params;
 use crate::perception::cleaning::{self, Cleaned, CleaningCounts, spacing};
-use crate::perception::{far_side, normals, visibility};
+use crate::perception::normals::{self, Changed};
+use crate::perception::{far_side, visibility};
 
 /// Normals shorter than this are taken as not given.
 const NO_DIRECTION: f32 = 1e-6;
@@ -40,7 +41,8 @@ pub struct Supporter<'m> {
 /// What had to be done to the normals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NormalCounts {
-    /// Normals that were missing or zero, and were estimated from the neighbouring points.
+    /// Normals that were missing or zero, and were estimated from the neighbouring points: all of the cloud, where the given ones are no
+    /// normals of the surface on which the points are.
     pub estimated: usize,
     /// Normals that were not of unit length, and were scaled to it.
     pub renormalised: usize,
@@ -101,7 +103,7 @@ impl<'m> Supporter<'m> {
         if is_taken_as_it_is && (params.uses_mechanics() || !views.is_empty()) {
             spacing::measure(&tree.tree(), seen.spacings, &meter)?;
         }
-        let reversed = normals::complete(
+        let changed = normals::complete(
             &tree.tree(),
             seen.normals,
             seen.spacings,
@@ -110,6 +112,10 @@ impl<'m> Supporter<'m> {
             scratch.scratch(),
             &meter,
         )?;
+        let (estimated, reversed) = match changed {
+            Changed::Reversed(reversed) => (estimated, reversed),
+            Changed::Replaced => (points.len(), 0),
+        };
         let normals = NormalCounts { estimated, renormalised, reversed };
         meter.check_cancelled()?;
 

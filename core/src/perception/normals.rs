@@ -5,19 +5,36 @@ use super::orientation::{self, Given};
 use super::visibility;
 use crate::geometry::{Neighbour, Point, PointTree, Vector, Viewpoints, least_eigenvector};
 use crate::memory::{Arena, array_bytes};
-use crate::monitor::{Meter, Unfinished};
+use crate::monitor::{Meter, Stop, Unfinished};
 use nalgebra::Matrix3;
 
+/// One in so many of the points that vote on the side of a cloud also tells whether its normals are those of the surface.
+const TESTED: usize = 4;
 /// Points that a normal is fitted to, itself included.
 const NEIGHBOURS: usize = 16;
+/// Share of the variance of a neighbourhood that is along its normal, up to which it is flat: 0.04 with noise of a third of the
+/// spacing, 0.15 and more in a blob without a surface. Set by hand.
+const FLAT: f32 = 0.05;
+/// Mean cosine between given normals and those of flat neighbourhoods below which the given ones are no normals of the surface: 0.5 if
+/// they are random or all the same, and above 0.9 for those of a surface with noise. Set by hand.
+const MIN_COSINE: f32 = 0.75;
 
 /// Bytes of working memory for a cloud of `points`.
 pub(crate) const fn scratch_bytes(points: usize) -> usize {
     array_bytes::<u32>(points).saturating_add(orientation::scratch_bytes(points))
 }
 
-/// Fills in the normals, in tree order, that are zero, and reverses given ones that point into the solid or at random.
-/// Returns how many were reversed.
+/// What was done to normals that were given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Changed {
+    /// Some or all were reversed: how many.
+    Reversed(usize),
+    /// All were estimated anew.
+    Replaced,
+}
+
+/// Fills in the normals, in tree order, that are zero, reverses given ones that point into the solid or to either side, and
+/// replaces all if the given ones do not stand on the surface.
 ///
 /// Where some normals are known, the others take the side of the known ones around them. Where none is, or the known
 /// ones have no consistent side, they face the viewpoint if there is one that can have seen them all, and otherwise the
@@ -30,7 +47,7 @@ pub(crate) fn complete(
     up: Vector,
     mut scratch: Arena,
     meter: &Meter,
-) -> Result<usize, Unfinished> {
+) -> Result<Changed, Unfinished> {
     let missing = normals.iter().filter(|n| **n == Vector::zeros()).count();
     let orient = |normals: &mut [Vector], scratch| match viewpoints.single() {
         Some(viewpoint) if visibility::explain(tree, normals, spacings, viewpoints, meter)? => {
@@ -39,28 +56,30 @@ pub(crate) fn complete(
         }
         _ => orientation::orient(tree, normals, spacings, (viewpoints, up), scratch, meter),
     };
-    if missing == normals.len() {
+    let are_missing = missing == normals.len();
+    if are_missing || !stand_on_surface(tree, normals, meter)? {
         tree.for_each_k_nearest::<NEIGHBOURS>(meter, |index, neighbours| {
-            normals[index] = fit(tree, &tree.points()[index], neighbours);
+            normals[index] = fit(tree, &tree.points()[index], neighbours).0;
         })?;
         orient(normals, scratch)?;
-        return Ok(0);
+        return Ok(if are_missing { Changed::Reversed(0) } else { Changed::Replaced });
     }
     if missing > 0 {
         follow_neighbours(tree, normals, up, scratch.scratch(), meter)?;
     }
     match orientation::judge(tree, normals, meter)? {
-        Given::Outwards => Ok(0),
+        Given::Outwards => Ok(Changed::Reversed(0)),
         Given::Inwards => {
             normals.iter_mut().for_each(|normal| *normal = -*normal);
-            Ok(normals.len())
+            Ok(Changed::Reversed(normals.len()))
         }
         Given::Unoriented => {
             let first = |normal: &Vector| u32::from(leading_sign(normal));
             let before = scratch.slice::<u32>(normals.len())?;
             before.iter_mut().zip(normals.iter()).for_each(|(before, normal)| *before = first(normal));
             orient(normals, scratch)?;
-            Ok(before.iter().zip(normals.iter()).filter(|(b, n)| **b != first(n)).count())
+            let is_reversed = |(before, normal): &(&u32, &Vector)| **before != first(normal);
+            Ok(Changed::Reversed(before.iter().zip(normals.iter()).filter(is_reversed).count()))
         }
     }
 }
@@ -70,15 +89,35 @@ fn leading_sign(normal: &Vector) -> bool {
     normal.iter().find(|x| **x != 0.0).is_some_and(|x| *x > 0.0)
 }
 
-/// The direction, of either sign, in which the `neighbours` of `point` are thinnest.
-fn fit(tree: &PointTree, point: &Point, neighbours: &[Neighbour]) -> Vector {
+/// Whether the given normals are, but for their signs, those of the surface on which the points are, as far as it is flat enough to
+/// tell. Those of a cloud without a surface pass.
+fn stand_on_surface(tree: &PointTree, normals: &[Vector], meter: &Meter) -> Result<bool, Stop> {
+    let (mut known, mut flat, mut cosines) = (0, 0, 0.0);
+    let is_known = |index: &usize| normals[*index] != Vector::zeros();
+    for index in orientation::voters(normals.len()).step_by(TESTED).filter(is_known) {
+        meter.check_cancelled()?;
+        let point = &tree.points()[index];
+        let mut found = [Neighbour::default(); NEIGHBOURS];
+        let (normal, thinness) = fit(tree, point, tree.k_nearest(point, &mut found));
+        known += 1;
+        if thinness <= FLAT {
+            flat += 1;
+            cosines += normal.dot(&normals[index]).abs();
+        }
+    }
+    Ok(2 * flat < known || cosines >= MIN_COSINE * flat as f32)
+}
+
+/// The direction, of either sign, in which the `neighbours` of `point` are thinnest, and the share of their variance that is along it.
+fn fit(tree: &PointTree, point: &Point, neighbours: &[Neighbour]) -> (Vector, f32) {
     let offsets = || neighbours.iter().map(|n| tree.points()[n.index as usize] - point);
     let mean = offsets().sum::<Vector>() / neighbours.len() as f32;
     // Scaled by the reach, so that the squares of millimetres keep their precision.
     let reach = offsets().map(|offset| offset.amax()).fold(f32::MIN_POSITIVE, f32::max);
     let covariance: Matrix3<f32> =
         offsets().map(|offset| (offset - mean) / reach).map(|offset| offset * offset.transpose()).sum();
-    least_eigenvector(covariance)
+    let normal = least_eigenvector(covariance);
+    (normal, normal.dot(&(covariance * normal)) / covariance.trace().max(f32::MIN_POSITIVE))
 }
 
 fn face(tree: &PointTree, normals: &mut [Vector], viewpoint: &Point) {
@@ -112,7 +151,7 @@ fn follow_neighbours(
             .filter(|&other| is_missing[other] == 0)
             .map(|other| normals[other])
             .sum();
-        let normal = fit(tree, point, neighbours);
+        let (normal, _) = fit(tree, point, neighbours);
         let like = if around == Vector::zeros() { up } else { around };
         normals[index] = if normal.dot(&like) < 0.0 { -normal } else { normal };
     }
@@ -138,7 +177,7 @@ mod tests {
     fn with_completed(
         known: impl Fn(usize, Vector) -> Vector,
         viewpoints: &[Point],
-        check: impl Fn(&[Point], &[Vector], &[Vector], usize),
+        check: impl Fn(&[Point], &[Vector], &[Vector], Changed),
     ) {
         let turn = nalgebra::Rotation3::from_euler_angles(0.4, 0.2, 0.0);
         let shape = test_shapes::torus(0.04, 0.012, 64, 32).map(|p| turn * p);
@@ -156,7 +195,7 @@ mod tests {
         let mut normals: Vec<Vector> =
             truth.iter().enumerate().map(|(i, &normal)| known(i, normal)).collect();
         let spacings = spacings(&tree);
-        let reversed = complete(
+        let changed = complete(
             &tree,
             &mut normals,
             &spacings,
@@ -166,7 +205,7 @@ mod tests {
             &Meter::unwatched(),
         )
         .unwrap();
-        check(tree.points(), &truth, &normals, reversed);
+        check(tree.points(), &truth, &normals, changed);
     }
 
     #[test]
@@ -174,8 +213,8 @@ mod tests {
         with_completed(
             |_, _| Vector::zeros(),
             &[],
-            |_, truth, normals, reversed| {
-                assert_eq!(reversed, 0);
+            |_, truth, normals, changed| {
+                assert_eq!(changed, Changed::Reversed(0));
                 assert!(truth.iter().zip(normals).all(|(t, n)| t.dot(n) > 0.95));
             },
         );
@@ -232,8 +271,8 @@ mod tests {
     fn a_few_missing_ones_follow_their_neighbours() {
         // Known normals point inwards here, so that the missing ones are seen to follow them; then all are reversed.
         let known = |i: usize, normal: Vector| if i.is_multiple_of(7) { Vector::zeros() } else { -normal };
-        with_completed(known, &[], |_, truth, normals, reversed| {
-            assert_eq!(reversed, 3000);
+        with_completed(known, &[], |_, truth, normals, changed| {
+            assert_eq!(changed, Changed::Reversed(3000));
             assert!(truth.iter().zip(normals).all(|(t, n)| t.dot(n) > 0.95));
         });
     }
@@ -243,8 +282,8 @@ mod tests {
         with_completed(
             |_, normal| -normal,
             &[],
-            |_, truth, normals, reversed| {
-                assert_eq!(reversed, 3000);
+            |_, truth, normals, changed| {
+                assert_eq!(changed, Changed::Reversed(3000));
                 assert!(truth.iter().zip(normals).all(|(t, n)| t == n));
             },
         );
@@ -256,10 +295,40 @@ mod tests {
         with_completed(
             |i, normal| normal * sign(i),
             &[],
-            |_, truth, normals, reversed| {
+            |_, truth, normals, changed| {
                 let wrong = (0..3000).filter(|&i| sign(i) < 0.0).count();
-                assert!(wrong > 1000 && reversed == wrong);
+                assert!(wrong > 1000 && changed == Changed::Reversed(wrong));
                 assert!(truth.iter().zip(normals).all(|(t, n)| t == n));
+            },
+        );
+    }
+
+    #[test]
+    fn given_normals_that_do_not_stand_on_the_surface_are_estimated_anew() {
+        let mut random = crate::random::Random::new(1);
+        let directions: Vec<Vector> =
+            (0..3000).map(|_| Vector::from_fn(|_, _| random.next_f32() - 0.5).normalize()).collect();
+        let at_random = |i: usize, _: Vector| directions[i];
+        let all_the_same = |_: usize, _: Vector| Vector::z();
+        for given in [&at_random as &dyn Fn(usize, Vector) -> Vector, &all_the_same] {
+            with_completed(given, &[], |_, truth, normals, changed| {
+                assert_eq!(changed, Changed::Replaced);
+                assert!(truth.iter().zip(normals).all(|(t, n)| t.dot(n) > 0.95));
+            });
+        }
+    }
+
+    /// Noise of a camera, which turns normals by up to 40 degrees.
+    #[test]
+    fn given_normals_with_noise_stay() {
+        let mut random = crate::random::Random::new(2);
+        let lean: Vec<Vector> = (0..3000).map(|_| Vector::from_fn(|_, _| random.next_f32() - 0.5)).collect();
+        with_completed(
+            |i, normal| (normal + lean[i]).normalize(),
+            &[],
+            |_, truth, normals, changed| {
+                assert_eq!(changed, Changed::Reversed(0));
+                assert!(truth.iter().zip(normals).zip(&lean).all(|((t, n), l)| *n == (t + l).normalize()));
             },
         );
     }
@@ -269,8 +338,8 @@ mod tests {
         with_completed(
             |_, normal| normal,
             &[],
-            |_, truth, normals, reversed| {
-                assert_eq!(reversed, 0);
+            |_, truth, normals, changed| {
+                assert_eq!(changed, Changed::Reversed(0));
                 assert!(truth.iter().zip(normals).all(|(t, n)| t == n));
             },
         );

@@ -216,7 +216,7 @@ impl Votes {
 }
 
 /// Indices of up to [`VOTERS`] points, spread over the cloud.
-fn voters(points: usize) -> impl Iterator<Item = usize> {
+pub(super) fn voters(points: usize) -> impl Iterator<Item = usize> {
     let count = points.min(VOTERS);
     (0..count).map(move |voter| voter * points / count)
 }

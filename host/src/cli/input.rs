@@ -142,6 +142,12 @@ pub(super) fn tell_of_cloud(path: &Path, supporter: &Supporter, cloud: &Cloud) {
     let NormalCounts { estimated, reversed, .. } = supporter.normals();
     let points = cloud.points().len();
     let is_seen = !cloud.viewpoints().is_empty();
+    if estimated == points
+        && cloud.normals().is_some_and(|given| given.iter().any(|normal| *normal != [0.0; 3]))
+    {
+        let note = "the given normals are not those of the surface on which the points are, so none was used";
+        say("note", format_args!("{}: {note}", path.display()));
+    }
     let side = match (estimated == points, is_seen) {
         (true, true) => "and face the viewpoint",
         (true, false) => "and their signs are a guess: pass --viewpoint if the camera position is known",
