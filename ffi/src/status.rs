@@ -96,6 +96,10 @@ pub const HANGPOSE_STAGE_OTHER_KIND: hangpose_stage = 14;
 /// hangpose_request.has_approach.
 pub const HANGPOSE_STAGE_NO_APPROACH: hangpose_stage = 15;
 
+/// The object comes to rest firmly enough, but where the supporter would carry its points are so far apart that they hardly
+/// tell its shape.
+pub const HANGPOSE_STAGE_TOO_SPARSE: hangpose_stage = 16;
+
 pub(crate) fn stage(stage: Stage) -> hangpose_stage {
     match stage {
         Stage::NoContactPoints => HANGPOSE_STAGE_NO_CONTACT_POINTS,
@@ -113,6 +117,7 @@ pub(crate) fn stage(stage: Stage) -> hangpose_stage {
         Stage::InScene => HANGPOSE_STAGE_IN_SCENE,
         Stage::OtherKind => HANGPOSE_STAGE_OTHER_KIND,
         Stage::NoApproach => HANGPOSE_STAGE_NO_APPROACH,
+        Stage::TooSparse => HANGPOSE_STAGE_TOO_SPARSE,
     }
 }
 
@@ -200,6 +205,9 @@ pub(crate) fn stage_text(stage: hangpose_stage) -> &'static CStr {
         HANGPOSE_STAGE_NO_APPROACH => {
             c"poses stay, but no straight way in the direction that was asked for leads to any of them"
         }
+        HANGPOSE_STAGE_TOO_SPARSE => {
+            c"poses stay, but the supporter's points are too far apart to tell its shape: points at most 10 mm apart would help"
+        }
         _ => c"unknown stage",
     }
 }
@@ -228,6 +236,7 @@ mod tests {
             Stage::InScene,
             Stage::OtherKind,
             Stage::NoApproach,
+            Stage::TooSparse,
         ] {
             assert_eq!(stage_text(stage(core)).to_str().unwrap(), core.to_string());
         }

@@ -25,6 +25,9 @@ impl Counts {
         if self.settling.unseen > 0 {
             return Some(Stage::Unseen);
         }
+        if self.settling.sparse > 0 {
+            return Some(Stage::TooSparse);
+        }
         Some(self.settling.unmet_wish().unwrap_or_else(|| self.settling.failure()))
     }
 }

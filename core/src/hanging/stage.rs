@@ -37,6 +37,9 @@ pub enum Stage {
     /// Poses stay, but no straight way in the direction that was asked for leads to them
     /// ([`Request::approach`](super::Request::approach)).
     NoApproach,
+    /// Released poses come to rest firmly enough, but where the supporter would carry its points are so far apart that they hardly tell its
+    /// shape.
+    TooSparse,
 }
 
 impl core::fmt::Display for Stage {
@@ -63,6 +66,7 @@ impl core::fmt::Display for Stage {
             Self::InScene => "every pose touches the scene or an object that hangs already",
             Self::OtherKind => "poses stay, but none hangs in a way that was allowed",
             Self::NoApproach => "poses stay, but no straight way in the direction that was asked for leads to any of them",
+            Self::TooSparse => "poses stay, but the supporter's points are too far apart to tell its shape: points at most 10 mm apart would help",
         })
     }
 }

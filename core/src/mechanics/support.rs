@@ -129,6 +129,14 @@ impl<'a> Support<'a> {
             .map(|(point, patch)| (point, &patch.normal))
     }
 
+    /// Distance from a place on the surface within which four points are, metres: how far apart the points are there. With fewer
+    /// points infinite.
+    pub(crate) fn spacing_at(&self, place: &Point) -> f32 {
+        let mut found = [Neighbour::default(); 4];
+        let nearest = self.tree.k_nearest(place, &mut found);
+        nearest.get(3).map_or(f32::INFINITY, |last| libm::sqrtf(last.distance_squared))
+    }
+
     /// Unit vector along the surface in the direction in which it is least curved, at the patch nearest to a point that faces as
     /// `normal`; `None` where the surface is flat or nothing faces there.
     pub(crate) fn bar_near(&self, point: &Point, normal: &Vector) -> Option<Vector> {

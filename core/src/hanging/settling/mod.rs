@@ -45,6 +45,8 @@ pub struct SettlingCounts {
     /// Releases that came to rest in a pose that would be probable enough if what no camera has seen were known to be as it is
     /// guessed.
     pub unseen: usize,
+    /// Releases that came to rest in a pose that would be probable enough if the supporter's points were closer together.
+    pub sparse: usize,
     /// Distinct rest poses with a probability of at least [`Params::min_probability`], with those that gave way to a better one that
     /// hardly differs.
     pub probable: usize,
@@ -249,7 +251,9 @@ impl<'a> Settling<'a> {
         // A pose that cannot beat the last one of a full list need not be tilted in every direction.
         let last = poses.next_to_go().map_or(0.0, |pose| self.merit(pose)) / self.request.weight(kind);
         let unseen = unseen(scene, &pose, meter)?;
-        let given = Given { kind, clearance: gap, play, centre_error: self.body.centre_error, unseen };
+        let spacing = self.spacing(&contacts, meter)?;
+        let centre_error = self.body.centre_error;
+        let given = Given { kind, clearance: gap, play, centre_error, unseen, spacing };
         let least = probability::least_tilt(last, &given).max(MIN_USEFUL_TILT);
         let at = (&settled.pose, &contacts[..]);
         let sleeps = [&mut *self.sleeps, &mut *self.other_sleeps];
@@ -260,6 +264,8 @@ impl<'a> Settling<'a> {
         let least = self.params.min_probability;
         if rest.probability < least && probability::of(&margin, &given.as_if_seen()) >= least {
             self.counts.unseen += 1;
+        } else if rest.probability < least && probability::of(&margin, &given.as_if_dense()) >= least {
+            self.counts.sparse += 1;
         }
         if rest.probability < least || self.known(&rest.pose, poses).is_some() {
             return Ok(true);
@@ -279,6 +285,12 @@ impl<'a> Settling<'a> {
         }
         self.offer(pose, poses);
         Ok(true)
+    }
+
+    /// How far apart the points of the supporter are at the contact where they are farthest apart, metres.
+    fn spacing(&self, contacts: &[Contact], meter: &mut Meter) -> Result<f32, Stop> {
+        meter.distance_queries(contacts.len())?;
+        Ok(contacts.iter().map(|contact| self.support.spacing_at(&contact.position)).fold(0.0, f32::max))
     }
 
     /// Whether further releases are unlikely to find a clearly better pose.

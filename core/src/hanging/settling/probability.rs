@@ -70,6 +70,12 @@ const PER_SUPPORTER: f32 = 0.8;
 /// often as if all had been seen; for others the doubt grows linearly. Of 0.5, 1 and 2 the likeliest on scans of seed 12.
 const DEEP: f32 = 1.0;
 
+/// Doubt for each metre of [`Given::spacing`] beyond [`DENSE`], 1/m. A fit by `make calibrate`.
+const PER_SPACING: f32 = 100.0;
+/// Distance between points up to which a cloud shows as much as there is to see of what things hang on, metres: as far as a bar is
+/// thick.
+const DENSE: f32 = 0.01;
+
 /// What is known of a pose beside its margin.
 pub(super) struct Given {
     pub(super) kind: Kind,
@@ -80,12 +86,19 @@ pub(super) struct Given {
     /// By how much the centre of mass may be wrong, metres.
     pub(super) centre_error: f32,
     pub(super) unseen: Unseen,
+    /// How far apart the points of the supporter are where it carries, metres.
+    pub(super) spacing: f32,
 }
 
 impl Given {
     /// The same if cameras had seen all.
     pub(super) fn as_if_seen(&self) -> Self {
         Self { unseen: Unseen::default(), ..*self }
+    }
+
+    /// The same with a dense cloud of the supporter.
+    pub(super) fn as_if_dense(&self) -> Self {
+        Self { spacing: 0.0, ..*self }
     }
 
     /// Score of a pose, but for its margin.
@@ -110,11 +123,16 @@ fn share_as_weighed(centre_error: f32, margin: &Margin) -> f32 {
     libm::expf(-PER_CENTRE_ERROR * (centre_error / tolerated).min(MAX_CENTRE_ERROR))
 }
 
+/// Share of the poses that hang, of those that would hang if the supporter's surface were as it is put through its points.
+fn share_as_sampled(spacing: f32) -> f32 {
+    libm::expf(-PER_SPACING * (spacing - DENSE).max(0.0))
+}
+
 /// What remains of the probability ([`cautious`]) of a pose if the object had room where it hangs and its centre of mass were certain. Both
 /// are much the same for all poses of a pair, so a longer search would not better them.
 pub(super) fn with_room(margin: &Margin, clearance: f32, unseen: &Unseen) -> f32 {
-    let (kind, play, centre_error) = (Kind::Hooked, ENOUGH_PLAY, 0.0);
-    cautious(margin, &Given { kind, clearance, play, centre_error, unseen: *unseen })
+    let (kind, play, centre_error, spacing) = (Kind::Hooked, ENOUGH_PLAY, 0.0, 0.0);
+    cautious(margin, &Given { kind, clearance, play, centre_error, unseen: *unseen, spacing })
 }
 
 /// Whether a pose is firm: it is about as good as a pose can be. What was not seen of the object and near it is the same for all poses
@@ -145,10 +163,10 @@ pub(super) fn least_tilt(probability: f32, given: &Given) -> f32 {
 
 /// The probability that a pose with this margin hangs.
 pub(super) fn of(margin: &Margin, given: &Given) -> f32 {
-    share(margin, given) * logistic(score(margin, given))
+    share_as_sampled(given.spacing) * share(margin, given) * logistic(score(margin, given))
 }
 
-/// The probability that a pose hangs, less a reserve, for its rank.
+/// The probability that a pose hangs, less a reserve, for its rank. It takes the cloud for dense: another place of it is hardly denser.
 pub(super) fn cautious(margin: &Margin, given: &Given) -> f32 {
     share(margin, given) * logistic(score(margin, given) - RESERVE)
 }
@@ -171,7 +189,7 @@ pub(super) fn of_robust(margin: &Margin, given: &Given) -> f32 {
         + ROBUST_PER_JOLT * margin.jolt_time
         + ROBUST_PER_TILT * mean_tilt
         + ROBUST_PER_ESCAPE * margin.escape_ratio.min(MAX_ESCAPE_RATIO);
-    share(margin, given) * logistic(score)
+    share_as_sampled(given.spacing) * share(margin, given) * logistic(score)
 }
 
 fn share(margin: &Margin, given: &Given) -> f32 {
@@ -183,7 +201,14 @@ mod tests {
     use super::*;
 
     fn given(unseen: Unseen) -> Given {
-        Given { kind: Kind::Hooked, clearance: 0.001, play: ENOUGH_PLAY, centre_error: 0.0, unseen }
+        Given {
+            kind: Kind::Hooked,
+            clearance: 0.001,
+            play: ENOUGH_PLAY,
+            centre_error: 0.0,
+            unseen,
+            spacing: 0.0,
+        }
     }
 
     #[test]
@@ -216,13 +241,16 @@ mod tests {
     }
 
     #[test]
-    fn what_holds_by_chance_is_tight_or_may_be_weighed_wrongly_hangs_less_often() {
+    fn what_holds_by_chance_is_tight_sparse_or_may_be_weighed_wrongly_hangs_less_often() {
         let sure = given(Unseen::default());
         let margin = Margin { centre_of_mass_radius: 0.05, ..Margin::default() };
         let said = |given: &Given| of(&margin, given);
         assert!(said(&Given { kind: Kind::Balanced, ..given(Unseen::default()) }) < said(&sure));
         assert!(said(&Given { play: 0.002, ..given(Unseen::default()) }) < said(&sure));
         let weighed = |centre_error| Given { centre_error, ..given(Unseen::default()) };
+        let sampled = |spacing| said(&Given { spacing, ..given(Unseen::default()) });
+        assert!(sampled(0.03) < sampled(0.02) && sampled(0.02) < sampled(DENSE));
+        assert!(sampled(DENSE) == said(&sure) && sampled(f32::INFINITY) == 0.0);
         assert!(said(&weighed(0.02)) < said(&weighed(0.01)) && said(&weighed(0.01)) < said(&sure));
     }
 }

@@ -105,7 +105,8 @@ impl Rest {
     /// The probability less a reserve, for the rank.
     pub(super) fn cautious(&self, body: &Body) -> f32 {
         let &Self { kind, clearance, unseen, .. } = self;
-        let given = Given { kind, clearance, play: self.play(), centre_error: body.centre_error, unseen };
+        let (play, centre_error) = (self.play(), body.centre_error);
+        let given = Given { kind, clearance, play, centre_error, unseen, spacing: 0.0 };
         probability::cautious(&self.margin, &given)
     }
 
