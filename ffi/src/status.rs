@@ -206,7 +206,7 @@ pub(crate) fn stage_text(stage: hangpose_stage) -> &'static CStr {
             c"poses stay, but no straight way in the direction that was asked for leads to any of them"
         }
         HANGPOSE_STAGE_TOO_SPARSE => {
-            c"poses stay, but the supporter's points are too far apart to tell its shape: points at most 10 mm apart would help"
+            c"poses stay, but the supporter's points are too far apart to tell its shape: points at most 8 mm apart would help"
         }
         _ => c"unknown stage",
     }

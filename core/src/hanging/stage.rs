@@ -66,7 +66,7 @@ impl core::fmt::Display for Stage {
             Self::InScene => "every pose touches the scene or an object that hangs already",
             Self::OtherKind => "poses stay, but none hangs in a way that was allowed",
             Self::NoApproach => "poses stay, but no straight way in the direction that was asked for leads to any of them",
-            Self::TooSparse => "poses stay, but the supporter's points are too far apart to tell its shape: points at most 10 mm apart would help",
+            Self::TooSparse => "poses stay, but the supporter's points are too far apart to tell its shape: points at most 8 mm apart would help",
         })
     }
 }

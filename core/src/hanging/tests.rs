@@ -523,6 +523,23 @@ fn a_peg_in_the_shadow_of_the_ring_is_unseen() {
     assert_eq!(stage([0.5, 0.0, 0.0]), (None, Some(Stage::Unseen)));
 }
 
+/// Points on a peg of 5 mm radius, ever farther apart.
+#[test]
+fn the_farther_apart_the_points_the_less_is_certain() {
+    let said = |apart: f32, min_probability: f32| {
+        let mut scene = Scene::ring_on_peg(0.0);
+        let along = Vector::x() * 0.05;
+        let middle = Point::new(0.3, -0.2, 0.5);
+        (scene.points, scene.normals) = test_shapes::peg(middle - along, middle + along, 0.005, apart);
+        let (poses, rejection) = scene.predict(&Params { min_probability, ..product() });
+        (poses.first().map_or(0.0, |pose| pose.rest.unwrap().probability), rejection)
+    };
+    let [(dense, _), (thinned, _), (sparse, _)] = [0.001, 0.004, 0.02].map(|apart| said(apart, 0.0));
+    assert!((dense - thinned).abs() < 0.01, "{dense} {thinned}");
+    assert!(sparse > 0.0 && sparse < 0.7 * dense, "{sparse} {dense}");
+    assert_eq!(said(0.02, 0.9), (0.0, Some(Stage::TooSparse)));
+}
+
 #[test]
 fn what_the_memory_held_does_not_matter() {
     let scene = Scene::key_on_peg();

@@ -137,6 +137,15 @@ impl<'a> Support<'a> {
         nearest.get(3).map_or(f32::INFINITY, |last| libm::sqrtf(last.distance_squared))
     }
 
+    /// The same at the point that is nearest to a place.
+    pub(crate) fn spacing_near(&self, place: &Point) -> f32 {
+        let mut found = [Neighbour::default()];
+        let nearest = self.tree.k_nearest(place, &mut found);
+        nearest
+            .first()
+            .map_or(f32::INFINITY, |nearest| self.spacing_at(&self.tree.points()[nearest.index as usize]))
+    }
+
     /// Unit vector along the surface in the direction in which it is least curved, at the patch nearest to a point that faces as
     /// `normal`; `None` where the surface is flat or nothing faces there.
     pub(crate) fn bar_near(&self, point: &Point, normal: &Vector) -> Option<Vector> {

@@ -3,7 +3,7 @@
 
 use super::orientation::{self, Given};
 use super::visibility;
-use crate::geometry::{Neighbour, Point, PointTree, Vector, Viewpoints, least_eigenvector};
+use crate::geometry::{Neighbour, Point, PointTree, Vector, Viewpoints, eigenvectors};
 use crate::memory::{Arena, array_bytes};
 use crate::monitor::{Meter, Stop, Unfinished};
 use nalgebra::Matrix3;
@@ -12,9 +12,9 @@ use nalgebra::Matrix3;
 const TESTED: usize = 4;
 /// Points that a normal is fitted to, itself included.
 const NEIGHBOURS: usize = 16;
-/// Share of the variance of a neighbourhood that is along its normal, up to which it is flat: 0.04 with noise of a third of the
-/// spacing, 0.15 and more in a blob without a surface. Set by hand.
-const FLAT: f32 = 0.05;
+/// Variance of a neighbourhood along its normal, as a share of the lesser one along its surface, up to which it is flat: 0.09 with noise of
+/// a third of the spacing, 0.3 and more in a blob without a surface or along a wire. Set by hand.
+const FLAT: f32 = 0.1;
 /// Mean cosine between given normals and those of flat neighbourhoods below which the given ones are no normals of the surface: 0.5 if
 /// they are random or all the same, and above 0.9 for those of a surface with noise. Set by hand.
 const MIN_COSINE: f32 = 0.75;
@@ -108,7 +108,8 @@ fn stand_on_surface(tree: &PointTree, normals: &[Vector], meter: &Meter) -> Resu
     Ok(2 * flat < known || cosines >= MIN_COSINE * flat as f32)
 }
 
-/// The direction, of either sign, in which the `neighbours` of `point` are thinnest, and the share of their variance that is along it.
+/// The direction, of either sign, in which the `neighbours` of `point` are thinnest, and their variance along it as a share of that in the
+/// next direction; 1 where they are on a line.
 fn fit(tree: &PointTree, point: &Point, neighbours: &[Neighbour]) -> (Vector, f32) {
     let offsets = || neighbours.iter().map(|n| tree.points()[n.index as usize] - point);
     let mean = offsets().sum::<Vector>() / neighbours.len() as f32;
@@ -116,8 +117,11 @@ fn fit(tree: &PointTree, point: &Point, neighbours: &[Neighbour]) -> (Vector, f3
     let reach = offsets().map(|offset| offset.amax()).fold(f32::MIN_POSITIVE, f32::max);
     let covariance: Matrix3<f32> =
         offsets().map(|offset| (offset - mean) / reach).map(|offset| offset * offset.transpose()).sum();
-    let normal = least_eigenvector(covariance);
-    (normal, normal.dot(&(covariance * normal)) / covariance.trace().max(f32::MIN_POSITIVE))
+    let (variances, directions) = eigenvectors(covariance);
+    let least = variances.imin();
+    let next = variances[(least + 1) % 3].min(variances[(least + 2) % 3]);
+    let thinness = if next > f32::EPSILON * variances.max() { variances[least] / next } else { 1.0 };
+    (directions[least], thinness)
 }
 
 fn face(tree: &PointTree, normals: &mut [Vector], viewpoint: &Point) {

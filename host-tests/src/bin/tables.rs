@@ -32,6 +32,9 @@ struct Arguments {
     /// Restrict the generated pairs to this kind of object, such as "cap".
     #[arg(long, value_name = "KIND", value_parser = object_kind)]
     only: Option<String>,
+    /// Number of points of each supporter's cloud where it is no scan.
+    #[arg(long, default_value_t = case::POINTS)]
+    points: usize,
     /// Engine that judges. With both, the tables are by Bullet, and ODE also judges the best pose of generated pairs.
     #[arg(long, value_enum, default_value_t = Engine::Both)]
     engine: Engine,
@@ -134,6 +137,7 @@ fn main() -> Result<()> {
     };
     let work = |mut cases: Vec<case::Case>, engine| {
         cases.retain(|case| arguments.only.as_ref().is_none_or(|kind| case.object_kind == *kind));
+        cases.iter_mut().for_each(|case| case.points = arguments.points);
         let options = Options {
             profiles: &profiles,
             scans: &scans_or_exact,

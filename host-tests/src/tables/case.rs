@@ -8,8 +8,8 @@ use hangpose::mechanics::Kind;
 use hangpose::sample_supporter;
 use std::sync::Arc;
 
-/// Number of points of a supporter's cloud.
-const POINTS: usize = 10_000;
+/// Number of points of a supporter's cloud, unless it is set.
+pub const POINTS: usize = 10_000;
 
 /// An object, a supporter, and whether the object can hang on it.
 #[derive(Clone)]
@@ -30,6 +30,8 @@ pub struct Case {
     pub object: Arc<Solid>,
     /// The supporter.
     pub supporter: Arc<Solid>,
+    /// Number of points of the supporter's cloud.
+    pub points: usize,
     /// Openings of a generated object, through which a scan may look. The predictor does not see them.
     pub openings: Vec<Opening>,
     /// Bars of a generated supporter, at which a scan is aimed. The predictor does not see them.
@@ -37,9 +39,9 @@ pub struct Case {
 }
 
 impl Case {
-    /// The supporter as the predictor sees it: a cloud of 10 000 samples of its surface.
+    /// The supporter as the predictor sees it: a cloud of samples of its surface.
     pub fn supporter_cloud(&self) -> CloudFile {
-        sample_supporter(&self.supporter.mesh(), POINTS, self.seed)
+        sample_supporter(&self.supporter.mesh(), self.points, self.seed)
     }
 
     /// Which opening of a generated object is joined with a bar at a rest pose, by construction.
@@ -140,6 +142,7 @@ fn made_case(object: &ObjectKind, supporter: usize, seed: u64, draw: u64, should
         meant,
         object: Arc::new(turned.solid),
         supporter: Arc::new(made.1.solid),
+        points: POINTS,
         openings: turned.openings,
         bars: made.1.bars,
     })

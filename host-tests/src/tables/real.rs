@@ -1,6 +1,6 @@
 //! Pairs of real meshes, from a folder with a `manifest.json`.
 
-use super::case::{Case, Fit};
+use super::case::{Case, Fit, POINTS};
 use crate::solid::Solid;
 use anyhow::{Context, Result};
 use hangpose::files::read_mesh;
@@ -58,6 +58,7 @@ pub fn real(folder: &Path, pairs: usize) -> Result<Vec<Case>> {
                 meant: None,
                 object: object.solid.clone(),
                 supporter: supporter.solid.clone(),
+                points: POINTS,
                 openings: Vec::new(),
                 bars: Vec::new(),
             }

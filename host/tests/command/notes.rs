@@ -48,7 +48,7 @@ fn missing_normals_are_estimated() {
 }
 
 #[test]
-fn normals_that_point_inwards_or_at_random_are_reversed() {
+fn normals_that_point_inwards_or_at_random_are_mended() {
     let scene = Scene::new();
     let hangs = |cloud: &Path| {
         let run = run!("predict", "--object", scene.ring, "--supporter", cloud, "--json", "-");
@@ -71,6 +71,25 @@ fn normals_that_point_inwards_or_at_random_are_reversed() {
     let text = hangs(&scene.write("random.xyz", shapes::xyz(&points)));
     let part = format!("so {} of {} were reversed by the shape", points.len().div_ceil(2), points.len());
     assert!(text.contains(&part), "{part} in {text}");
+
+    // All the same, which is no surface's.
+    let mut points = shapes::peg();
+    points.iter_mut().for_each(|p| p[3..].copy_from_slice(&[0.0, 0.0, 1.0]));
+    let text = hangs(&scene.write("up.xyz", shapes::xyz(&points)));
+    assert!(text.contains("not those of the surface"), "{text}");
+    assert!(text.contains(&format!("{0} of {0} normals were estimated", points.len())), "{text}");
+}
+
+/// One point in so many is left of the peg's cloud.
+#[test]
+fn sparse_clouds_are_named() {
+    let scene = Scene::new();
+    let points: Vec<_> = shapes::peg().into_iter().step_by(400).collect();
+    let cloud = scene.write("sparse.xyz", shapes::xyz(&points));
+    let params = scene.write("sure.toml", "min_probability = 0.9");
+    let run = run!("predict", "--object", scene.ring, "--supporter", cloud, "--params", params);
+    assert_eq!(run.status, Some(3), "{}{}", run.stdout, run.stderr);
+    assert!(run.stdout.contains("too far apart"), "{}", run.stdout);
 }
 
 #[test]

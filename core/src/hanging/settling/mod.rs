@@ -251,7 +251,7 @@ impl<'a> Settling<'a> {
         // A pose that cannot beat the last one of a full list need not be tilted in every direction.
         let last = poses.next_to_go().map_or(0.0, |pose| self.merit(pose)) / self.request.weight(kind);
         let unseen = unseen(scene, &pose, meter)?;
-        let spacing = self.spacing(&contacts, meter)?;
+        let spacing = self.spacing(&settled.pose, &contacts, meter)?;
         let centre_error = self.body.centre_error;
         let given = Given { kind, clearance: gap, play, centre_error, unseen, spacing };
         let least = probability::least_tilt(last, &given).max(MIN_USEFUL_TILT);
@@ -287,9 +287,13 @@ impl<'a> Settling<'a> {
         Ok(true)
     }
 
-    /// How far apart the points of the supporter are at the contact where they are farthest apart, metres.
-    fn spacing(&self, contacts: &[Contact], meter: &mut Meter) -> Result<f32, Stop> {
-        meter.distance_queries(contacts.len())?;
+    /// How far apart the points of the supporter are at the contact where they are farthest apart, metres; where none carries at that
+    /// moment, at the point nearest to the centre of mass.
+    fn spacing(&self, rest: &Pose, contacts: &[Contact], meter: &mut Meter) -> Result<f32, Stop> {
+        meter.distance_queries(contacts.len().max(1))?;
+        if contacts.is_empty() {
+            return Ok(self.support.spacing_near(&(rest * self.body.centre)));
+        }
         Ok(contacts.iter().map(|contact| self.support.spacing_at(&contact.position)).fold(0.0, f32::max))
     }
 
