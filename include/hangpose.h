@@ -507,7 +507,8 @@ typedef struct hangpose_supporter_info {
   uint32_t points_on_planes;
   // Number of points that no viewpoint saw and that were guessed: the far sides of bars and plates.
   uint32_t points_guessed;
-  // Number of normals that were missing or zero and were estimated from the neighbouring points.
+  // Number of normals that were missing or zero and were estimated from the neighbouring points: all of the
+  // cloud, where the given ones are no normals of the surface on which the points are.
   uint32_t normals_estimated;
   // Number of normals that were not of unit length and were normalised.
   uint32_t normals_renormalised;
@@ -826,6 +827,9 @@ typedef struct hangpose_prediction {
   uint32_t settling_other_kind;
   // Number of poses that would stay, but have no way in the direction that was asked for.
   uint32_t settling_no_approach;
+  // Number of releases that came to rest in a pose that would be probable enough if the supporter's points were closer
+  // together.
+  uint32_t settling_sparse;
   // Number of rays cast.
   uint64_t rays;
   // Number of distance and inside-outside queries.
@@ -1227,6 +1231,10 @@ typedef struct hangpose_points_settings {
 // The object stays, but no straight way in the direction that was asked for leads to the pose:
 // hangpose_request.has_approach.
 #define HANGPOSE_STAGE_NO_APPROACH 15
+
+// The object comes to rest firmly enough, but where the supporter would carry its points are so far apart that they hardly
+// tell its shape.
+#define HANGPOSE_STAGE_TOO_SPARSE 16
 
 // The library's own method.
 #define HANGPOSE_PROFILE_DEFAULT 0

@@ -74,6 +74,9 @@ pub struct hangpose_prediction {
     pub settling_other_kind: u32,
     /// Number of poses that would stay, but have no way in the direction that was asked for.
     pub settling_no_approach: u32,
+    /// Number of releases that came to rest in a pose that would be probable enough if the supporter's points were closer
+    /// together.
+    pub settling_sparse: u32,
     /// Number of rays cast.
     pub rays: u64,
     /// Number of distance and inside-outside queries.
@@ -209,6 +212,7 @@ impl From<&Prediction<'_>> for hangpose_prediction {
             at_rest,
             wedged,
             unseen,
+            sparse,
             probable,
             firm,
             firm_as_preferred,
@@ -241,6 +245,7 @@ impl From<&Prediction<'_>> for hangpose_prediction {
             settling_outside: outside as u32,
             settling_other_kind: other_kind as u32,
             settling_no_approach: no_approach as u32,
+            settling_sparse: sparse as u32,
             rays: found.work.rays,
             distance_queries: found.work.distance_queries,
         }

@@ -30,6 +30,7 @@ fn every_count_of_a_prediction_reaches_its_field() {
         outside: 34,
         other_kind: 35,
         no_approach: 36,
+        sparse: 37,
     };
     let candidates = contacts::CandidateCounts { made: 21, clear: 22 };
     let search = SearchCounts::Contacts(contacts::Counts { candidates, ..Default::default() });
@@ -50,7 +51,7 @@ fn every_count_of_a_prediction_reaches_its_field() {
     assert_eq!([c.settling_at_rest, c.settling_wedged, c.settling_unseen], [27, 28, 31]);
     assert_eq!([c.settling_probable, c.settling_firm, c.settling_firm_as_preferred], [29, 30, 32]);
     assert_eq!([c.settling_in_scene, c.settling_outside], [33, 34]);
-    assert_eq!([c.settling_other_kind, c.settling_no_approach], [35, 36]);
+    assert_eq!([c.settling_other_kind, c.settling_no_approach, c.settling_sparse], [35, 36, 37]);
     assert_eq!([c.rays, c.distance_queries], [1 << 40, 1 << 41]);
 
     let matching = sites::MatchingCounts { pairs: 11, fitting: 12, clear: 13 };

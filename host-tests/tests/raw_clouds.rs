@@ -6,7 +6,7 @@ use hangpose::{Monitor, Params, analyze_object, analyze_supporter, predict_poses
 use host_tests::judge::{Bullet, Judge, Scene};
 use host_tests::shapes::Random;
 use host_tests::solid::Solid;
-use host_tests::tables::case::{Case, Fit, made};
+use host_tests::tables::case::{Case, Fit, POINTS, made};
 use nalgebra::Vector3;
 use std::path::Path;
 use std::sync::Arc;
@@ -190,6 +190,7 @@ fn sample() -> Case {
         meant: None,
         object: solid("mug.obj"),
         supporter: solid("hook.obj"),
+        points: POINTS,
         openings: Vec::new(),
         bars: Vec::new(),
     }
