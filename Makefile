@@ -139,8 +139,11 @@ $(peer_python): bench/requirements.txt
 	$(peer_python) -m pip install --quiet --requirement bench/requirements.txt
 	@touch $@
 
+# Points of the supporter's cloud.
+sparse = 30 60 120 250 500 1000 10000
+
 calibrate: setup $(peer_python)
-	@mkdir -p build
+	@mkdir -p build/sparse
 	cargo run --release -p host-tests --bin tables -- --summary --all --engine bullet --profile default --pairs 330 --seed 100 --json build/calibration.jsonl
 ifdef MESHES
 	cargo run --release -p host-tests --bin tables -- --summary --all --engine bullet --profile default --pairs 0 --seed 100 \
@@ -150,6 +153,10 @@ endif
 	cargo run --release -p host-tests --bin tables -- --summary --all --engine bullet --profile improbable --pairs 60 --seed 12 \
 		--scan $(scans) --json build/doubt.jsonl
 	$(peer_python) bench/doubt.py build/doubt.jsonl
+	for points in $(sparse); do \
+		cargo run --release -p host-tests --bin tables -- --summary --engine bullet --profile default --pairs 60 --seed 72 \
+			--points $$points --json build/sparse/$$points.jsonl || exit; done
+	$(peer_python) bench/sparse.py $(sparse:%=build/sparse/%.jsonl)
 
 peer: setup $(peer_python)
 	cargo build --release -p hangpose
