@@ -250,7 +250,7 @@ static void *search(void *of) {
   if (s->is_marked) mark(4);
   if (s->status < 0) return NULL;
   add_word(&s->of_poses, (uint32_t)s->status);
-  ADD(&s->of_poses, &s->found, pose_count, settling_no_approach);
+  ADD(&s->of_poses, &s->found, pose_count, settling_sparse);
   ADD_WORK(&s->of_poses, &s->found);
   for (uint32_t i = 0; i < s->found.pose_count; ++i) ADD(&s->of_poses, &s->poses[i], has_pose, total);
   if (!s->has_plan || s->found.pose_count == 0) return NULL;

@@ -140,10 +140,9 @@ impl<'a> Support<'a> {
     /// The same at the point that is nearest to a place.
     pub(crate) fn spacing_near(&self, place: &Point) -> f32 {
         let mut found = [Neighbour::default()];
-        let nearest = self.tree.k_nearest(place, &mut found);
-        nearest
-            .first()
-            .map_or(f32::INFINITY, |nearest| self.spacing_at(&self.tree.points()[nearest.index as usize]))
+        let nearest = self.tree.k_nearest(place, &mut found).first();
+        let point = nearest.and_then(|nearest| self.tree.points().get(nearest.index as usize));
+        point.map_or(f32::INFINITY, |point| self.spacing_at(point))
     }
 
     /// Unit vector along the surface in the direction in which it is least curved, at the patch nearest to a point that faces as

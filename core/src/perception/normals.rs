@@ -93,16 +93,18 @@ fn leading_sign(normal: &Vector) -> bool {
 /// tell. Those of a cloud without a surface pass.
 fn stand_on_surface(tree: &PointTree, normals: &[Vector], meter: &Meter) -> Result<bool, Stop> {
     let (mut known, mut flat, mut cosines) = (0, 0, 0.0);
-    let is_known = |index: &usize| normals[*index] != Vector::zeros();
-    for index in orientation::voters(normals.len()).step_by(TESTED).filter(is_known) {
+    for index in orientation::voters(normals.len()).step_by(TESTED) {
         meter.check_cancelled()?;
-        let point = &tree.points()[index];
+        let (Some(point), Some(given)) = (tree.points().get(index), normals.get(index)) else { continue };
+        if *given == Vector::zeros() {
+            continue;
+        }
         let mut found = [Neighbour::default(); NEIGHBOURS];
         let (normal, thinness) = fit(tree, point, tree.k_nearest(point, &mut found));
         known += 1;
         if thinness <= FLAT {
             flat += 1;
-            cosines += normal.dot(&normals[index]).abs();
+            cosines += normal.dot(given).abs();
         }
     }
     Ok(2 * flat < known || cosines >= MIN_COSINE * flat as f32)
