@@ -184,7 +184,7 @@ fn of_poses(found: &Prediction) -> String {
     let mut hash = Hash::new();
     hash.words([if found.poses.is_empty() { HANGPOSE_REJECTED } else { HANGPOSE_OK } as u32]);
     let prediction = hangpose_prediction::from(found);
-    let end = offset_of!(hangpose_prediction, settling_no_approach) + size_of::<u32>();
+    let end = offset_of!(hangpose_prediction, settling_sparse) + size_of::<u32>();
     hash.words(words_between(&prediction, offset_of!(hangpose_prediction, pose_count), end));
     hash.words([prediction.rays as u32, prediction.distance_queries as u32]);
     for pose in found.poses {
