@@ -24,7 +24,7 @@ fn main() {
         }
         let packages: Vec<_> = missing.iter().map(|(package, _)| *package).collect();
         eprintln!(
-            "host-tests needs Debian's {} and pkg-config: `make setup` installs them",
+            "host-tests needs Debian's {} and pkg-config: `make setup` installs them, and `scripts/setup.sh bench` those of the feature peers",
             packages.join(", ")
         );
         std::process::exit(1);

@@ -94,6 +94,21 @@ fn seen_from_all_around_it_is_closed_accurate_and_of_the_right_volume() {
 }
 
 #[test]
+fn a_wall_thinner_than_a_voxel_is_not_much_thicker() {
+    // A hollow ball without its top, as a ladle's head.
+    const WALL: f32 = 0.75 * VOXEL;
+    let bowl: Distance = |p| {
+        let shell = (p.coords.norm() - BALL_RADIUS).abs() - 0.5 * WALL;
+        shell.max(p.z - 0.2 * BALL_RADIUS)
+    };
+    // Archimedes: the area of a zone of a sphere goes with its height.
+    let volume = 2.0 * PI * BALL_RADIUS * (1.2 * BALL_RADIUS) * WALL;
+    let mesh = extract(&VolumeSettings::new(VOXEL), &around(bowl, 24));
+    let ratio = mesh.volume() / volume;
+    assert!((ratio - 1.0).abs() < 0.35, "{ratio}");
+}
+
+#[test]
 fn no_triangle_is_degenerate_and_every_vertex_is_used() {
     let mesh = extract(&VolumeSettings::new(VOXEL), &around(cuboid, 24));
     let mut used = vec![false; mesh.vertices.len()];
@@ -175,7 +190,8 @@ fn thin_things_keep_their_place() {
         let views: Vec<View> = poses(24).map(|pose| View::new(camera(), pose, shape, 0.75)).collect();
         let mesh = extract(&VolumeSettings { crop, ..VolumeSettings::new(voxel) }, &views);
         let (within, worst) = mesh.accuracy(shape, 0.5 * voxel);
-        assert!(within > 0.95 && worst < voxel, "{within} {worst}");
+        // Pixels are as large as the finer voxels: the outline is known to a voxel and a half.
+        assert!(within > 0.95 && worst < 1.5 * voxel, "{within} {worst}");
         assert_eq!(mesh.open_edges(), 0);
     }
 }

@@ -20,6 +20,11 @@ const LOST: i32 = 8;
 const SUPPORT: f32 = 0.01;
 /// Number of the eight pixels around one that must support it. A pixel with fewer is a flying pixel between two surfaces.
 const SUPPORTING: usize = 2;
+/// Distance behind a surface up to which an observation has more than the least weight, truncations. Farther behind, the image shows
+/// only that something is in front of it, and an image from the other side of a thin wall knows better. With 1, walls of 0.75 voxels
+/// became 2.3 times as thick, with this 1.3 times; of 130 scanned pairs each (`tables --scan 24+3,3+1 --pairs 130 --seed 504`) 116 and
+/// 82 hung, with this 122 and 90. Smaller: noise in front of a surface outweighs noise behind it, and bars become thinner.
+const TRUSTED: f32 = 0.5;
 /// Weight of a pixel that sees nothing against one with a depth. It decides only where no image shows a surface: a surface
 /// that other images show may return nothing at a grazing angle.
 const NOTHING_SEEN: f32 = 1.0 / 32.0;
@@ -184,8 +189,8 @@ impl<'a> Fusion<'a> {
             return false;
         }
         let part = distance / self.truncation;
-        // Behind the surface, trust ends with the truncation, so that thin walls keep their other side.
-        voxel.observe(part, (weight * (1.0 + part.min(0.0))).max(1.0));
+        let trust = 1.0 + (part / TRUSTED).clamp(-1.0, 0.0);
+        voxel.observe(part, (weight * trust).max(1.0));
         true
     }
 
