@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 # As in core/src/hanging/settling/probability.rs: for the object, the shadow and the supporter.
-DOUBT = np.array([0.5, 1.8, 0.8])
+DOUBT = np.array([0.8, 1.8, 0.8])
 # Escape ratio from which a pose is deep.
 DEEP = 1.0
 BINS = [0.0, 0.3, 0.5, 0.8, 0.9, 0.95, 1.0]

@@ -61,7 +61,7 @@ const PER_CENTRE_ERROR: f32 = 0.6;
 /// Error of the centre of mass that counts at most, in multiples of that radius.
 const MAX_CENTRE_ERROR: f32 = 0.5;
 /// Doubt about a shallow pose for each part of the directions from which no camera looked at the object.
-const PER_OBJECT: f32 = 0.5;
+const PER_OBJECT: f32 = 0.8;
 /// Doubt for each part of the supporter in the object's box that is in the shadow of the object's mesh.
 const PER_SHADOW: f32 = 1.8;
 /// Doubt about a shallow pose for each part of the supporter close to the object that was guessed.
