@@ -1031,7 +1031,7 @@ typedef struct hangpose_volume_settings {
   // Distance between neighbouring voxels, metres. The voxels are at its integer multiples in world coordinates.
   float voxel;
   // Distance from the surface at which distances are cut off, metres: 2 to 32 voxels. Larger values bear more noise;
-  // walls thinner than a quarter of it become thicker than they are. Default: 4 voxels.
+  // walls thinner than half of it become thicker than they are. Default: 4 voxels.
   float truncation;
   // Depth along the z axis of the camera beyond which surfaces are not stored, metres. What is before them is still
   // free. Default: 5.

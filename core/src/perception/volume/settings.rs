@@ -19,7 +19,7 @@ pub struct VolumeSettings {
     /// Distance between neighbouring voxels, metres. The voxels are at its integer multiples in world coordinates.
     pub voxel: f32,
     /// Distance from the surface at which distances are cut off, metres: 2 to 32 voxels. Larger values bear more noise;
-    /// walls thinner than a quarter of it become thicker than they are.
+    /// walls thinner than half of it become thicker than they are.
     pub truncation: f32,
     /// Box in world coordinates, metres, outside of which nothing is stored; `None` for everything within 32767 voxels of
     /// the origin.
