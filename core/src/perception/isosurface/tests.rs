@@ -190,8 +190,8 @@ fn thin_things_keep_their_place() {
         let views: Vec<View> = poses(24).map(|pose| View::new(camera(), pose, shape, 0.75)).collect();
         let mesh = extract(&VolumeSettings { crop, ..VolumeSettings::new(voxel) }, &views);
         let (within, worst) = mesh.accuracy(shape, 0.5 * voxel);
-        // Pixels are as large as the finer voxels: the outline is known to a voxel and a half.
-        assert!(within > 0.95 && worst < 1.5 * voxel, "{within} {worst}");
+        // Pixels are as large as the finer voxels: single vertices at the outline are off by a little more.
+        assert!(within > 0.99 && worst < 1.25 * voxel, "{within} {worst}");
         assert_eq!(mesh.open_edges(), 0);
     }
 }
